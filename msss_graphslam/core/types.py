@@ -1,0 +1,219 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The records that flow through the package: measurements in, scans, constraints and poses out.
+
+Units are SI, angles radians, stamps integer nanoseconds of acquisition. A planar pose is a row
+(x, y, yaw). Frames follow REP-103 and REP-105: ENU, z up, yaw counter-clockwise.
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "Array",
+    "Beam",
+    "BodyVelocity",
+    "Constraint",
+    "ConstraintKind",
+    "Depth",
+    "Estimate",
+    "Inertial",
+    "Keyframe",
+    "Measurement",
+    "Odometry",
+    "Reading",
+    "Scan",
+    "Stamps",
+    "Trajectory",
+]
+
+Array = NDArray[np.float64]
+Stamps = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """One echo profile as the head sent it.
+
+    ``bearing`` [rad] is counter-clockwise in ``sonar_link``; ``ranges`` (n,) are the bins' centres
+    [m]; ``intensities`` (n,) the codes 0..255.
+    """
+
+    stamp_ns: int
+    bearing: float
+    ranges: Array
+    intensities: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """One IMU sample; what the sensor does not give is None (REP-145).
+
+    ``orientation`` (3,) is roll, pitch, yaw of ``base_link`` in ENU [rad]; ``angular_velocity``
+    (3,) is in ``base_link`` [rad/s].
+    """
+
+    stamp_ns: int
+    orientation: Array | None
+    angular_velocity: Array | None
+
+
+@dataclass(frozen=True, slots=True)
+class Depth:
+    """Vertical position from the pressure sensor: ``z`` [m], up, 0 at the surface."""
+
+    stamp_ns: int
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class BodyVelocity:
+    """A DVL's linear velocity (3,) of ``base_link`` [m/s] and its covariance (3, 3)."""
+
+    stamp_ns: int
+    velocity: Array
+    covariance: Array
+
+
+Measurement = Beam | Inertial | Depth | BodyVelocity
+
+
+@dataclass(frozen=True, slots=True)
+class Odometry:
+    """Dead reckoning at one stamp, in ``odom``.
+
+    ``pose`` (6,) is x, y, z, roll, pitch, yaw; ``covariance`` (6, 6) its covariance; ``twist``
+    (6,) linear and angular velocity of the body; ``twist_covariance`` (6, 6) the covariance of
+    that velocity's slowly changing error.
+    """
+
+    stamp_ns: int
+    pose: Array
+    covariance: Array
+    twist: Array
+    twist_covariance: Array
+
+    @property
+    def planar(self) -> Array:
+        """The planar pose (x, y, yaw)."""
+        return self.pose[[0, 1, 5]]
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """The candidate echoes of one beam, nearest first; an element of the reading history RH.
+
+    ``ranges`` (k,) leading edges [m], ``variances`` (k,) [m^2], ``levels`` (k,) echo levels [dB].
+    k may be 0. ``maximum_range`` is the last bin [m]; ``saturated`` and ``empty`` flag the beam.
+    """
+
+    stamp_ns: int
+    bearing: float
+    ranges: Array
+    variances: Array
+    levels: Array
+    maximum_range: float
+    saturated: bool = False
+    empty: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """One motion-compensated turn in the frame {I} of the vehicle at its first beam.
+
+    Beams: ``beam_stamps_ns`` (b,), ``motion`` (b, 3) the vehicle's pose at each beam in {I}.
+    Points: ``beam_index`` (n,) the beam each point was measured in, ``body_points`` (n, 2) [m] and
+    ``body_covariances`` (n, 2, 2) [m^2] in the levelled ``base_link`` of that beam; ``points``
+    (n, 2) and ``covariances`` (n, 2, 2) the same in {I}, the motion's uncertainty included.
+    ``motion_covariances`` (b, 3, 3) is that of ``motion``. ``heights`` (b,) is z of the vehicle.
+    ``end_motion`` (3,) is the pose in {I} at ``end_stamp_ns``, where the next scan starts.
+    """
+
+    stamp_ns: int
+    end_stamp_ns: int
+    beam_stamps_ns: Stamps
+    motion: Array
+    motion_covariances: Array
+    heights: Array
+    beam_index: NDArray[np.intp]
+    body_points: Array
+    body_covariances: Array
+    points: Array
+    covariances: Array
+    end_motion: Array
+    end_covariance: Array
+    complete: bool = True
+
+
+class ConstraintKind(StrEnum):
+    """Where a constraint comes from."""
+
+    ODOMETRY = "odometry"
+    CONSECUTIVE = "consecutive"
+    LOOP = "loop"
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """An edge tried between two keyframes: pose of ``second`` in ``first``, accepted or refused.
+
+    ``relative_pose`` (3,), ``covariance`` (3, 3). ``refusal`` is empty where it was accepted.
+    ``figures`` holds the gates' values by name.
+    """
+
+    kind: ConstraintKind
+    first: int
+    second: int
+    relative_pose: Array
+    covariance: Array
+    refusal: str = ""
+    figures: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the constraint is part of the graph."""
+        return not self.refusal
+
+
+@dataclass(frozen=True, slots=True)
+class Keyframe:
+    """A node of the graph: the scan, and its pose (3,) and covariance (3, 3) in ``map``."""
+
+    scan: Scan
+    pose: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """Stamped poses: ``stamps_ns`` (n,), ``poses`` (n, 6) as x, y, z, roll, pitch, yaw."""
+
+    stamps_ns: Stamps
+    poses: Array
+
+    @property
+    def planar(self) -> Array:
+        """The planar poses (n, 3)."""
+        return self.poses[:, [0, 1, 5]]
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """All that an estimator leaves at the end of a recording.
+
+    ``trajectory`` holds the corrected pose at every beam after all data, ``online`` what a
+    subscriber got at the time, ``dead_reckoning`` the EKF's; the three share their stamps.
+    ``keyframes`` carry the scans in their final layout, ``first_scans`` the same scans as dead
+    reckoning laid them out. ``constraints`` are all that were tried, in order.
+    """
+
+    estimator: str
+    trajectory: Trajectory
+    online: Trajectory
+    dead_reckoning: Trajectory
+    keyframes: tuple[Keyframe, ...]
+    first_scans: tuple[Scan, ...]
+    constraints: tuple[Constraint, ...]
