@@ -6,6 +6,8 @@ Units are SI, angles radians, stamps integer nanoseconds of acquisition. A plana
 (x, y, yaw). Frames follow REP-103 and REP-105: ENU, z up, yaw counter-clockwise.
 """
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -26,12 +28,15 @@ __all__ = [
     "Odometry",
     "Reading",
     "Scan",
+    "Stage",
     "Stamps",
     "Trajectory",
 ]
 
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
+Stage = Callable[[str], AbstractContextManager[object]]
+"""Encloses the work of a named stage, so that a caller can measure its time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +134,9 @@ class Scan:
     ``body_covariances`` (n, 2, 2) [m^2] in the levelled ``base_link`` of that beam; ``points``
     (n, 2) and ``covariances`` (n, 2, 2) the same in {I}, the motion's uncertainty included.
     ``motion_covariances`` (b, 3, 3) is that of ``motion``. ``heights`` (b,) is z of the vehicle.
-    ``end_motion`` (3,) is the pose in {I} at ``end_stamp_ns``, where the next scan starts.
+    ``odometry`` (3,) is the dead reckoning of {I} in ``odom``; ``end_motion`` (3,) the pose in {I}
+    at ``end_stamp_ns``, where the next scan starts. ``twist_covariance`` (3, 3) is that of the
+    motion's slow error: surge, sway [m/s] and yaw rate [rad/s].
     """
 
     stamp_ns: int
@@ -143,9 +150,16 @@ class Scan:
     body_covariances: Array
     points: Array
     covariances: Array
+    odometry: Array
     end_motion: Array
-    end_covariance: Array
+    twist_covariance: Array
     complete: bool = True
+
+    @property
+    def beam_times(self) -> Array:
+        """Seconds since the first beam of every beam and of ``end_stamp_ns`` (b + 1,)."""
+        stamps = np.append(self.beam_stamps_ns, self.end_stamp_ns)
+        return np.asarray((stamps - self.stamp_ns) * 1e-9)
 
 
 class ConstraintKind(StrEnum):

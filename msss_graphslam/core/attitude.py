@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Kinematics of roll, pitch, yaw: the blocks of the paper's J(X) and their derivatives.
+
+T. I. Fossen, Guidance and Control of Ocean Vehicles, 1994, chapter 2; angles in rad, z-y-x order.
+"""
+
+import math
+
+import numpy as np
+
+from msss_graphslam.core.types import Array
+
+__all__ = ["level", "rate_derivatives", "rate_matrix", "rotation_derivatives", "rotation_matrix"]
+
+
+def _axis_rotations(angles: Array) -> tuple[Array, Array, Array]:
+    roll, pitch, yaw = (float(angle) for angle in angles)
+    cr, sr = math.cos(roll), math.sin(roll)
+    cp, sp = math.cos(pitch), math.sin(pitch)
+    cy, sy = math.cos(yaw), math.sin(yaw)
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    return about_x, about_y, about_z
+
+
+_GENERATORS = (
+    np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]),
+    np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+)
+
+
+def rotation_matrix(angles: Array) -> Array:
+    """Return the body-to-world rotation (3, 3): the upper left block of J(X), equation 6."""
+    about_x, about_y, about_z = _axis_rotations(angles)
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def rotation_derivatives(angles: Array, vector: Array) -> Array:
+    """Return d(rotation_matrix @ vector)/d(angles), (3, 3)."""
+    about_x, about_y, about_z = _axis_rotations(angles)
+    turn_x, turn_y, turn_z = _GENERATORS
+    rolled = about_x @ vector
+    pitched = about_y @ rolled
+    return np.column_stack(
+        [
+            about_z @ about_y @ (turn_x @ rolled),
+            about_z @ (turn_y @ pitched),
+            turn_z @ (about_z @ pitched),
+        ]
+    )
+
+
+def rate_matrix(angles: Array) -> Array:
+    """Return body rates to angle rates (3, 3): the lower right block of J(X), equation 6."""
+    roll, pitch = float(angles[0]), float(angles[1])
+    cr, sr, tp, cp = math.cos(roll), math.sin(roll), math.tan(pitch), math.cos(pitch)
+    return np.array([[1.0, sr * tp, cr * tp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])
+
+
+def rate_derivatives(angles: Array, rates: Array) -> Array:
+    """Return d(rate_matrix @ rates)/d(angles), (3, 3)."""
+    roll, pitch = float(angles[0]), float(angles[1])
+    cr, sr, tp, cp = math.cos(roll), math.sin(roll), math.tan(pitch), math.cos(pitch)
+    q, r = float(rates[1]), float(rates[2])
+    along, across = cr * q - sr * r, sr * q + cr * r
+    return np.array(
+        [
+            [along * tp, across / cp**2, 0.0],
+            [-across, 0.0, 0.0],
+            [along / cp, across * tp / cp, 0.0],
+        ]
+    )
+
+
+def level(roll: Array, pitch: Array, points: Array) -> Array:
+    """Return body points (n, 3) in the levelled frame of the same yaw; one roll, pitch a point."""
+    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    lowered = sr * y + cr * z
+    return np.column_stack([cp * x + sp * lowered, cr * y - sr * z, -sp * x + cp * lowered])

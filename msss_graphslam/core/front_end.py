@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The front end of Figure 4: a new scan and the optimised poses in, constraints out."""
+
+from contextlib import nullcontext
+
+import numpy as np
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.compounding import between, compose, compose_jacobians
+from msss_graphslam.core.data_association import Candidate, associate
+from msss_graphslam.core.graph_construction import (
+    Node,
+    consecutive_constraint,
+    loop_constraints,
+    odometry_constraint,
+)
+from msss_graphslam.core.matchers import ScanMatcher
+from msss_graphslam.core.motion_feedback import MotionFeedback, offset_motion
+from msss_graphslam.core.recipes import Recipe
+from msss_graphslam.core.scan_generation import lay_out, motion_covariances
+from msss_graphslam.core.shape_matching import shape_descriptor
+from msss_graphslam.core.trajectory_correction import correct_motion
+from msss_graphslam.core.types import Array, Constraint, Scan, Stage
+
+__all__ = ["FrontEnd"]
+
+ROUNDS = 2
+"""Matches of consecutive scans: the first one corrects their layout for the second."""
+
+
+class FrontEnd:
+    """Keeps the keyframes' scans and makes the constraints of each new one."""
+
+    def __init__(
+        self, configuration: Configuration, recipe: Recipe, stage: Stage = lambda _: nullcontext()
+    ) -> None:
+        self._configuration = configuration
+        self._recipe = recipe
+        self._stage = stage
+        self._matcher = recipe.matcher(configuration.matching) if recipe.matcher else None
+        correlation_time = configuration.dead_reckoning.velocity_correlation_time
+        self._feedback = MotionFeedback(correlation_time)
+        self.nodes: list[Node] = []
+        self.poses = np.empty((0, 3))
+
+    @property
+    def offset(self) -> Array:
+        """The twist error (3,) of dead reckoning that the sonar has shown so far."""
+        return self._feedback.offset
+
+    def add_scan(self, scan: Scan) -> list[Constraint]:
+        """Algorithm 1, lines 8 to 11: return the constraints tried for a new keyframe.
+
+        Their first is the one by which the keyframe hangs on its predecessor; the first scan of
+        all has none.
+        """
+        if not self.nodes:
+            self._append(scan, scan.odometry, np.zeros((3, 3)))
+            return []
+        relative, covariance = self._reckon(scan)
+        constraints = [odometry_constraint(self.nodes, relative, covariance)]
+        if self._matcher is not None:
+            constraints = self._match(self._matcher, relative, covariance)
+        return constraints
+
+    def correct(self, poses: Array, covariance: Array) -> None:
+        """Algorithm 1, lines 12 to 14: take over the optimised poses, make the last scan anew.
+
+        ``poses`` (n, 3) of all keyframes, ``covariance`` (3, 3) of the newest.
+        """
+        self.poses = poses
+        self.nodes[-1].covariance = covariance
+        if len(self.nodes) > 1:
+            with self._stage("trajectory_correction"):
+                self._lay_out_reference(between(poses[-2], poses[-1]))
+
+    def pose_ahead(self) -> tuple[Array, Array]:
+        """Return the corrected pose (3,) at the end of the newest scan, and its odometry (3,)."""
+        scan = self.nodes[-1].first_scan
+        motion = np.vstack([scan.motion, scan.end_motion])
+        ahead = offset_motion(motion, scan.beam_times, self.offset)[-1]
+        return compose(self.poses[-1], ahead), compose(scan.odometry, scan.end_motion)
+
+    def _reckon(self, scan: Scan) -> tuple[Array, Array]:
+        """Append the new node; return its pose in its predecessor and that pose's covariance."""
+        reference = self.nodes[-1]
+        previous = reference.first_scan
+        elapsed = np.append(previous.beam_times[:-1], (scan.stamp_ns - previous.stamp_ns) * 1e-9)
+        motion = np.vstack([previous.motion, between(previous.odometry, scan.odometry)])
+        if self._recipe.goes_beyond:
+            self._feedback.predict(float(elapsed[-1]), scan.twist_covariance)
+        error = self._motion_error(scan)
+        motion = offset_motion(motion, elapsed, self.offset)
+        relative = motion[-1]
+        covariance = motion_covariances(motion, elapsed, error)[-1] + 1e-9 * np.eye(3)
+        by_first, by_second = compose_jacobians(self.poses[-1], relative)
+        pose_covariance = (
+            by_first @ reference.covariance @ by_first.T + by_second @ covariance @ by_second.T
+        )
+        self._append(scan, compose(self.poses[-1], relative), pose_covariance)
+        return relative, covariance
+
+    def _append(self, scan: Scan, pose: Array, covariance: Array) -> None:
+        laid_out = self._with_offset(scan)
+        self.poses = np.vstack([self.poses, pose])
+        descriptor = shape_descriptor(laid_out.points, float(pose[2]))
+        prepared = self._matcher.prepare(laid_out) if self._matcher else None
+        self.nodes.append(Node(laid_out, prepared, scan, descriptor, covariance))
+
+    def _match(self, matcher: ScanMatcher, relative: Array, covariance: Array) -> list[Constraint]:
+        with self._stage("scan_matching"):
+            consecutive = self._match_consecutive(matcher, relative, covariance)
+        constraints = [consecutive]
+        if self._recipe.goes_beyond or not consecutive.accepted:
+            # Deviation: Algorithm 4 leaves a keyframe without any edge where spIC fails; the
+            # odometry constraint of equation 1 keeps it in the graph.
+            constraints.insert(0, odometry_constraint(self.nodes, relative, covariance))
+        if self._recipe.goes_beyond and consecutive.accepted:
+            self.poses[-1] = compose(self.poses[-2], consecutive.relative_pose)
+        if self._recipe.closes_loops:
+            with self._stage("data_association"):
+                candidates = self._associate()
+            with self._stage("scan_matching"):
+                constraints += loop_constraints(self.nodes, self.poses, candidates, matcher)
+        return constraints
+
+    def _match_consecutive(
+        self, matcher: ScanMatcher, relative: Array, covariance: Array
+    ) -> Constraint:
+        constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
+        if not self._recipe.goes_beyond:
+            return constraint
+        for _ in range(ROUNDS - 1):
+            if constraint.accepted:
+                self._learn(constraint)
+                constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
+        return constraint
+
+    def _learn(self, constraint: Constraint) -> None:
+        """Take the motion that a match shows into the layout of both its scans."""
+        reference = self.nodes[-2]
+        scan = reference.first_scan
+        delta = self._lay_out_reference(constraint.relative_pose)
+        beam_period = scan.beam_times[-1] / len(scan.beam_stamps_ns)
+        duration = scan.beam_times[-1]
+        self._feedback.update(delta / beam_period, constraint.covariance / duration**2)
+        current = self.nodes[-1]
+        current.scan = self._with_offset(current.first_scan)
+        if self._matcher is not None:
+            current.prepared = self._matcher.prepare(current.scan)
+
+    def _with_offset(self, scan: Scan) -> Scan:
+        motion = offset_motion(scan.motion, scan.beam_times[:-1], self.offset)
+        return lay_out(scan, motion, self._motion_error(scan))
+
+    def _motion_error(self, scan: Scan) -> Array:
+        learned = self._feedback.covariance
+        return learned if learned.any() else scan.twist_covariance
+
+    def _lay_out_reference(self, target: Array) -> Array:
+        """Section VII for the scan before the newest; return delta X of equation 14."""
+        reference = self.nodes[-2]
+        scan = reference.first_scan
+        end = between(scan.odometry, self.nodes[-1].first_scan.odometry)
+        correction = correct_motion(scan.motion, end, target, self._recipe.solver)
+        reference.scan = lay_out(scan, correction.poses, self._motion_error(scan))
+        if self._matcher is not None:
+            reference.prepared = self._matcher.prepare(reference.scan)
+        return correction.delta
+
+    def _associate(self) -> list[Candidate]:
+        config = self._configuration.association
+        covariances = np.array([node.covariance for node in self.nodes])
+        current = self.nodes[-1]
+        if self._recipe.goes_beyond:
+            # Deviation: scans overlap although their poses differ. Where the poses are well known
+            # equation 11 would refuse every revisit that is a metre off.
+            covariances = covariances + self._overlap(config.reach)
+        candidates = associate(
+            self.poses[:-1],
+            covariances[:-1],
+            [node.descriptor for node in self.nodes[:-1]],
+            self.poses[-1],
+            covariances[-1],
+            current.descriptor,
+            config,
+        )
+        return _spread(candidates, config.most) if self._recipe.goes_beyond else candidates
+
+    def _overlap(self, reach: float) -> Array:
+        points = self.nodes[-1].scan.body_points
+        width = reach * float(np.median(np.hypot(*points.T))) if len(points) else 0.0
+        return np.diag([width**2, width**2, np.pi**2])
+
+
+def _spread(candidates: list[Candidate], most: int) -> list[Candidate]:
+    """Return the nearest candidates, no two of them neighbours in time, in order of time."""
+    chosen: list[Candidate] = []
+    for candidate in sorted(candidates, key=lambda entry: entry.mahalanobis):
+        if all(abs(candidate.index - other.index) > 1 for other in chosen):
+            chosen.append(candidate)
+        if len(chosen) == most:
+            break
+    return sorted(chosen, key=lambda entry: entry.index)

@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Ghosts in a turn of readings, found by comparing with other bearings at the same range.
+
+A strong surface shows again at its own range: through the sidelobes over all bearings, and in the
+mirror that the vehicle's hull is. Such images move with the vehicle, so they look like walls to a
+filter of neighbours; but they are far weaker than their origin. An oblique wall, or one end of a
+small tank, may be just as weak in some beams, so it is not an echo that is judged but the surface
+that it belongs to: a chain of echoes over neighbouring beams.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from msss_graphslam.config.groups import Segmentation
+from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.types import Array, Reading
+
+__all__ = ["reject_ghosts"]
+
+Indices = NDArray[np.intp]
+
+_LARGEST_GAP = 2.5
+
+
+@dataclass(frozen=True, slots=True)
+class _Echoes:
+    """The echoes of a turn by beam, (n, k) with NaN where a beam has fewer than k.
+
+    ``ranges`` [m], ``levels`` [dB], ``spreads`` the ranges' standard deviations [m]; ``bearings``
+    (n,) [rad].
+    """
+
+    ranges: Array
+    levels: Array
+    spreads: Array
+    bearings: Array
+
+
+def reject_ghosts(readings: Sequence[Reading], config: Segmentation) -> list[Reading]:
+    """Return the readings of one turn, in their order, without the candidates that are ghosts.
+
+    A surface stays if enough beams see it, and if most of its echoes come near the strongest one
+    that the turn has at their range.
+    """
+    if not any(reading.ranges.size for reading in readings):
+        return list(readings)
+    echoes = _Echoes(
+        ranges=_table([reading.ranges for reading in readings]),
+        levels=_table([reading.levels for reading in readings]),
+        spreads=np.sqrt(_table([reading.variances for reading in readings])),
+        bearings=np.array([reading.bearing for reading in readings]),
+    )
+    surfaces = _surfaces(echoes, config)
+    deficits = _strongest_at_range(echoes, config.ghost_window) - echoes.levels
+    kept = np.zeros(surfaces.shape, dtype=bool)
+    for surface in np.unique(surfaces[surfaces >= 0]):
+        members = surfaces == surface
+        seen = members.any(axis=1).sum() >= config.surface_beams
+        kept[members] = seen and np.median(deficits[members]) < config.ghost_contrast
+    return [
+        _select(reading, mask[: reading.ranges.size])
+        for reading, mask in zip(readings, kept, strict=True)
+    ]
+
+
+def _table(rows: Sequence[Array]) -> Array:
+    """Return the rows as one (n, k) array, filled up with NaN."""
+    table = np.full((len(rows), max(row.size for row in rows)), np.nan)
+    for filled, row in zip(table, rows, strict=True):
+        filled[: row.size] = row
+    return table
+
+
+def _surfaces(echoes: _Echoes, config: Segmentation) -> Indices:
+    """Return the echoes' surfaces by number (n, k), -1 where there is no echo.
+
+    Echoes are linked to those of the next beam and, as one may be missing, of the next but one.
+    """
+    first, second = np.concatenate([_links(echoes, step, config) for step in (1, 2)], axis=1)
+    size = echoes.ranges.size
+    graph = coo_array((np.ones(first.size), (first, second)), shape=(size, size))
+    numbers = connected_components(graph, directed=False)[1].reshape(echoes.ranges.shape)
+    return np.where(np.isfinite(echoes.ranges), numbers, -1)
+
+
+def _links(echoes: _Echoes, step: int, config: Segmentation) -> Indices:
+    """Return the pairs (2, m) of flat indices that continue each other over ``step`` beams."""
+    turned = np.abs(wrap(np.roll(echoes.bearings, -step) - echoes.bearings))
+    usual = np.median(np.abs(wrap(np.diff(echoes.bearings, append=echoes.bearings[:1]))))
+    steepest = turned[:, None, None] * np.tan(config.steepest_incidence)
+    reach = np.maximum(*_pairs(echoes.ranges, step)) * steepest
+    reach += 2.0 * np.hypot(*_pairs(echoes.spreads, step))
+    apart = np.abs(np.subtract(*_pairs(echoes.ranges, step))) / reach
+    unlike = np.abs(np.subtract(*_pairs(echoes.levels, step))) / config.level_step
+    linked = (apart <= 1.0) & (unlike <= 1.0)
+    linked &= (turned <= _LARGEST_GAP * usual)[:, None, None]
+    beam, own, other = np.nonzero(_mutually_nearest(np.where(linked, apart + unlike, np.inf)))
+    beams, count = echoes.ranges.shape
+    return np.stack([beam * count + own, (beam + step) % beams * count + other])
+
+
+def _pairs(values: Array, step: int) -> tuple[Array, Array]:
+    """Return the echoes (n, k, 1) of every beam and those (n, 1, k) of the beam ``step`` on."""
+    return values[:, :, None], np.roll(values, -step, axis=0)[:, None, :]
+
+
+def _mutually_nearest(distances: Array) -> NDArray[np.bool_]:
+    """Return which pairs (n, k, k) are each other's nearest, at a finite distance."""
+    nearest = np.isfinite(distances)
+    nearest &= distances == distances.min(axis=2, keepdims=True)
+    nearest &= distances == distances.min(axis=1, keepdims=True)
+    return nearest
+
+
+def _strongest_at_range(echoes: _Echoes, window: float) -> Array:
+    """Return for every echo (n, k) the highest level within ``window`` [m] of its range."""
+    order = np.argsort(echoes.ranges, axis=None)[: np.isfinite(echoes.ranges).sum()]
+    ranges, levels = echoes.ranges.ravel()[order], echoes.levels.ravel()[order]
+    begin = np.searchsorted(ranges, ranges - window)
+    end = np.searchsorted(ranges, ranges + window, side="right")
+    strongest = np.full(echoes.ranges.size, np.nan)
+    strongest[order] = [levels[i:j].max() for i, j in zip(begin, end, strict=True)]
+    return strongest.reshape(echoes.ranges.shape)
+
+
+def _select(reading: Reading, mask: NDArray[np.bool_]) -> Reading:
+    if mask.all():
+        return reading
+    return replace(
+        reading,
+        ranges=reading.ranges[mask],
+        variances=reading.variances[mask],
+        levels=reading.levels[mask],
+    )

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scan matching and pose graph construction, Algorithm 4."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from msss_graphslam.core.compounding import between, between_covariance
+from msss_graphslam.core.data_association import Candidate
+from msss_graphslam.core.match_result import MatchResult
+from msss_graphslam.core.matchers import ScanMatcher
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
+
+__all__ = ["Node", "consecutive_constraint", "loop_constraints", "odometry_constraint"]
+
+
+@dataclass
+class Node:
+    """A keyframe as the front end keeps it.
+
+    ``scan`` in its present layout and ``prepared`` for the matcher, ``first_scan`` as dead
+    reckoning laid it out, its ``descriptor``, and ``covariance`` (3, 3) of its pose when it was
+    added, which later poses only make smaller.
+    """
+
+    scan: Scan
+    prepared: Any
+    first_scan: Scan
+    descriptor: Array
+    covariance: Array
+
+
+def odometry_constraint(
+    nodes: Sequence[Node], relative_pose: Array, covariance: Array
+) -> Constraint:
+    """Return the edge U_i of equation 1 from the last keyframe but one to the last."""
+    last = len(nodes) - 1
+    return Constraint(ConstraintKind.ODOMETRY, last - 1, last, relative_pose, covariance)
+
+
+def consecutive_constraint(
+    nodes: Sequence[Node], initial: Array, initial_covariance: Array, matcher: ScanMatcher
+) -> Constraint:
+    """Algorithm 4, lines 3 to 7: match the last keyframe with the one before."""
+    last = len(nodes) - 1
+    result = matcher.match(
+        nodes[last - 1].prepared, nodes[last].prepared, initial, initial_covariance
+    )
+    return _constraint(ConstraintKind.CONSECUTIVE, last - 1, last, result, {})
+
+
+def loop_constraints(
+    nodes: Sequence[Node],
+    poses: Array,
+    candidates: Sequence[Candidate],
+    matcher: ScanMatcher,
+) -> list[Constraint]:
+    """Algorithm 4, lines 8 to 13: match the last keyframe with every associated one.
+
+    ``poses`` (n, 3) are those of all nodes. Candidates that were refused stay refused.
+    """
+    constraints = []
+    current = len(nodes) - 1
+    for candidate in candidates:
+        node = nodes[candidate.index]
+        pose = poses[candidate.index]
+        figures = {
+            "mahalanobis": candidate.mahalanobis,
+            "shape_distance": candidate.shape_distance,
+        }
+        initial = between(pose, poses[current])  # line 9
+        covariance = between_covariance(  # line 10
+            pose, node.covariance, poses[current], nodes[current].covariance
+        )
+        result = MatchResult(initial, covariance, candidate.refusal)
+        if candidate.accepted:
+            result = matcher.match(node.prepared, nodes[current].prepared, initial, covariance)
+        constraints.append(
+            _constraint(ConstraintKind.LOOP, candidate.index, current, result, figures)
+        )
+    return constraints
+
+
+def _constraint(
+    kind: ConstraintKind, first: int, second: int, result: MatchResult, figures: dict[str, float]
+) -> Constraint:
+    return Constraint(
+        kind,
+        first,
+        second,
+        np.asarray(result.relative_pose),
+        np.asarray(result.covariance),
+        result.refusal,
+        {**figures, **result.figures},
+    )

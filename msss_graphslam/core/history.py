@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The histories RH and DRH of Algorithm 1, and when a turn of the head is whole."""
+
+from bisect import bisect_right
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from msss_graphslam.config.groups import Scanning
+from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.types import Array, Odometry, Reading, Stamps
+
+__all__ = ["DeadReckoningHistory", "Turn", "TurnDetector"]
+
+FULL_TURN = 2.0 * np.pi
+JUMP = 0.5
+"""A bearing that changes by more than this between two beams [rad] is no step of a head."""
+
+
+class DeadReckoningHistory:
+    """DRH: the odometry so far, looked up by stamp."""
+
+    def __init__(self) -> None:
+        self._entries: list[Odometry] = []
+        self._stamps: list[int] = []
+
+    def append(self, odometry: Odometry) -> None:
+        """Add the newest odometry; one that is not newer is left out."""
+        if not self._stamps or odometry.stamp_ns > self._stamps[-1]:
+            self._entries.append(odometry)
+            self._stamps.append(odometry.stamp_ns)
+
+    @property
+    def latest(self) -> Odometry | None:
+        """The newest odometry."""
+        return self._entries[-1] if self._entries else None
+
+    def covers(self, stamp_ns: int) -> bool:
+        """Whether a pose at ``stamp_ns`` can be had without guessing ahead."""
+        return bool(self._stamps) and self._stamps[-1] >= stamp_ns
+
+    def poses_at(self, stamps_ns: Stamps) -> Array:
+        """FindCorrespondingDR: the poses (n, 6) at ``stamps_ns`` (n,), angles interpolated.
+
+        A stamp before the first odometry takes the first pose, one after the last the last.
+        """
+        times = np.array(self._stamps, dtype=np.int64)
+        after = np.clip(np.searchsorted(times, stamps_ns), 1, max(len(times) - 1, 1))
+        before = after - 1
+        after = np.minimum(after, len(times) - 1)
+        poses = np.array([entry.pose for entry in self._entries])
+        span = np.maximum(times[after] - times[before], 1)
+        share = np.clip((stamps_ns - times[before]) / span, 0.0, 1.0)[:, None]
+        step = poses[after] - poses[before]
+        step[:, 3:] = wrap(step[:, 3:])
+        result = poses[before] + share * step
+        result[:, 3:] = wrap(result[:, 3:])
+        return np.asarray(result)
+
+    def at(self, stamp_ns: int) -> Odometry:
+        """Return the last odometry not after ``stamp_ns`` (the first if there is none)."""
+        return self._entries[max(bisect_right(self._stamps, stamp_ns) - 1, 0)]
+
+    def forget_before(self, stamp_ns: int) -> None:
+        """Drop what no stamp from ``stamp_ns`` on needs."""
+        keep = max(bisect_right(self._stamps, stamp_ns) - 1, 0)
+        del self._entries[:keep]
+        del self._stamps[:keep]
+
+
+@dataclass(slots=True)
+class Turn:
+    """RH: the readings of one turn or sweep.
+
+    ``end_ns`` is the next one's first stamp, ``swept`` the angle [rad] between the first beam and
+    the last, ``complete`` whether the head finished it.
+    """
+
+    readings: list[Reading]
+    end_ns: int
+    swept: float
+    complete: bool
+
+
+class TurnDetector:
+    """ScanDetermined: cuts the stream of readings into turns.
+
+    A full turn of a continuous head, either way round, or one sweep of a sector.
+    """
+
+    def __init__(self, config: Scanning, refused: Counter[str]) -> None:
+        self._gap_ns = round(config.gap * 1e9)
+        self._refused = refused
+        self._readings: list[Reading] = []
+        self._swept = 0.0
+        self._direction = 0.0
+
+    def add(self, reading: Reading) -> Turn | None:
+        """Take in one reading; return the turn that it ends, of which it is not a part."""
+        if not self._readings:
+            self._start(reading)
+            return None
+        last = self._readings[-1]
+        step = float(wrap(reading.bearing - last.bearing))
+        if reading.stamp_ns - last.stamp_ns > self._gap_ns:
+            self._drop("turn_dropped_for_a_gap", reading)
+            return None
+        reversed_sweep = step * self._direction < 0.0
+        if abs(step) > JUMP and not reversed_sweep:
+            self._drop("turn_dropped_for_a_bearing_jump", reading)
+            return None
+        if reversed_sweep or self._swept + abs(step) > FULL_TURN - 0.5 * abs(step):
+            return self._finish(reading)
+        self._readings.append(reading)
+        self._swept += abs(step)
+        self._direction = step or self._direction
+        return None
+
+    def finish(self) -> Turn | None:
+        """Return the turn in progress at the end of the recording."""
+        readings, self._readings = self._readings, []
+        if not readings:
+            return None
+        return Turn(readings, readings[-1].stamp_ns, self._swept, complete=False)
+
+    def _start(self, reading: Reading) -> None:
+        self._readings = [reading]
+        self._swept, self._direction = 0.0, 0.0
+
+    def _drop(self, reason: str, reading: Reading) -> None:
+        self._refused[reason] += 1
+        self._refused["beams_in_dropped_turns"] += len(self._readings)
+        self._start(reading)
+
+    def _finish(self, reading: Reading) -> Turn:
+        turn = Turn(self._readings, reading.stamp_ns, self._swept, complete=True)
+        self._start(reading)
+        return turn

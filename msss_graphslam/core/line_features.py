@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Local lines through a scan's points: what point-to-line matching aligns with."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from msss_graphslam.core.types import Array
+
+__all__ = ["LineFeatures", "line_features"]
+
+NEIGHBOURS = 7
+"""Points of a local line, itself included: enough to average, few enough to follow a bend."""
+
+FLATNESS = 0.15
+"""Largest ratio of a local line's thickness to its length (standard deviations)."""
+
+
+@dataclass(frozen=True)
+class LineFeatures:
+    """The local line at each point of a scan.
+
+    ``points`` (n, 2) and their ``covariances`` (n, 2, 2); the lines' ``centres`` (n, 2), their
+    ``normals`` (n, 2) towards the sensor, ``variances`` (n,) [m^2] of a point along the normal,
+    ``reach`` (n,) [m] how far a line is supported, ``flat`` (n,) whether there is a line at all;
+    ``tree`` finds the nearest point.
+    """
+
+    points: Array
+    covariances: Array
+    centres: Array
+    normals: Array
+    variances: Array
+    reach: Array
+    flat: np.ndarray
+    tree: cKDTree
+
+
+def line_features(points: Array, covariances: Array) -> LineFeatures | None:
+    """Fit a line through each point's neighbours; None with fewer than NEIGHBOURS points.
+
+    ``points`` (n, 2) [m] and ``covariances`` (n, 2, 2) [m^2] are those of a scan. The number of
+    neighbours, not a radius, sets the scale: far points lie farther apart.
+    """
+    if len(points) < NEIGHBOURS:
+        return None
+    tree = cKDTree(points)
+    distances, neighbours = tree.query(points, k=NEIGHBOURS)
+    local = points[neighbours]
+    centres = local.mean(axis=1)
+    spread = local - centres[:, None]
+    scatter = np.einsum("nki,nkj->nij", spread, spread) / NEIGHBOURS
+    eigenvalues, eigenvectors = np.linalg.eigh(scatter)
+    normals = eigenvectors[:, :, 0]
+    normals = np.where(np.sum(normals * centres, axis=1)[:, None] > 0.0, -normals, normals)
+    thickness, length = np.sqrt(np.maximum(eigenvalues.T, 0.0))
+    measured = np.einsum("ni,nij,nj->n", normals, covariances, normals)
+    return LineFeatures(
+        points=points,
+        covariances=covariances,
+        centres=centres,
+        normals=normals,
+        variances=np.maximum(measured, thickness**2),
+        reach=distances[:, -1],
+        flat=(thickness < FLATNESS * length) & _supported(distances),
+        tree=tree,
+    )
+
+
+def _supported(distances: Array) -> np.ndarray:
+    """Whether the neighbours are no farther than the spacing of the scan's points lets expect."""
+    spacing = np.median(distances[:, 1])
+    return np.asarray(distances[:, -1] < 8.0 * NEIGHBOURS * spacing)

@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the sonar tells of the vehicle's velocity, fed back into the next turn's layout."""
+
+# Deviation: not in the paper. Without a DVL the assumed speed is wrong for minutes; the corrected
+# trajectory of the turns so far knows better.
+
+import numpy as np
+
+from msss_graphslam.core.types import Array
+
+__all__ = ["MotionFeedback", "offset_motion"]
+
+
+class MotionFeedback:
+    """Kalman filter of the dead reckoning's twist error: surge, sway [m/s], yaw rate [rad/s].
+
+    The error is a Gauss-Markov process with the given correlation time [s]; its stationary
+    covariance is what dead reckoning says of itself.
+    """
+
+    def __init__(self, correlation_time: float) -> None:
+        self._correlation_time = correlation_time
+        self.offset = np.zeros(3)
+        self.covariance = np.zeros((3, 3))
+        self._started = False
+
+    def predict(self, interval: float, stationary: Array) -> None:
+        """Let ``interval`` [s] pass; ``stationary`` (3, 3) is the error's a-priori covariance."""
+        decay = float(np.exp(-interval / self._correlation_time)) if self._started else 0.0
+        self._started = True
+        self.offset = decay * self.offset
+        self.covariance = decay**2 * self.covariance + (1.0 - decay**2) * stationary
+
+    def update(self, offset: Array, covariance: Array) -> None:
+        """Take in a twist error (3,) that a pair of keyframes showed, with its covariance."""
+        gain = self.covariance @ np.linalg.inv(self.covariance + covariance)
+        self.offset = self.offset + gain @ (offset - self.offset)
+        self.covariance = (np.eye(3) - gain) @ self.covariance
+        self.covariance = 0.5 * (self.covariance + self.covariance.T)
+
+
+def offset_motion(motion: Array, elapsed: Array, offset: Array) -> Array:
+    """Return the motion (b, 3) with a constant twist error (3,) taken out; ``elapsed`` (b,) [s].
+
+    Every step between beams is composed with ``offset`` times its duration, as in equation 14.
+    """
+    durations = np.diff(elapsed, prepend=elapsed[0])
+    yaw = motion[:, 2] + offset[2] * elapsed
+    steps = np.diff(motion[:, 0] + 1j * motion[:, 1], prepend=motion[0, 0] + 1j * motion[0, 1])
+    steps = steps * np.exp(1j * offset[2] * elapsed)
+    drift = (offset[0] + 1j * offset[1]) * durations * np.exp(1j * yaw)
+    position = motion[0, 0] + 1j * motion[0, 1] + np.cumsum(steps + drift)
+    return np.column_stack([position.real, position.imag, yaw])

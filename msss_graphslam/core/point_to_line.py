@@ -1,0 +1,175 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Point-to-line scan matching, forwards and backwards.
+
+A. Censi, An ICP variant using a point-to-line metric, ICRA 2008; robust weights after Cauchy.
+"""
+
+# Deviation: takes the place of the paper's spIC in the estimator ``full``. A point of a slow scan
+# has no twin in the next one; pairing points drags the result towards no motion, pairing a point
+# with the line through its neighbours does not.
+
+import numpy as np
+
+from msss_graphslam.config.groups import Matching
+from msss_graphslam.core.compounding import (
+    between,
+    compose,
+    inverse,
+    inverse_jacobian,
+    rotation,
+    transform_points,
+    wrap,
+)
+from msss_graphslam.core.line_features import LineFeatures
+from msss_graphslam.core.match_result import MatchResult
+from msss_graphslam.core.types import Array
+
+__all__ = ["match_lines"]
+
+SAME_SIDE = 0.7
+"""Smallest cosine between the normals of a pair: a wall has two sides and a corner two walls."""
+
+CAUCHY = 2.0
+"""Residual, in robust standard deviations, at which a pair's weight is halved."""
+
+WIDEST = 1e4
+"""Variance [m^2, rad^2] that stands for a direction of which the scans say nothing."""
+
+
+def match_lines(
+    reference: LineFeatures | None,
+    current: LineFeatures | None,
+    initial: Array,
+    initial_covariance: Array,
+    config: Matching,
+) -> MatchResult:
+    """Align ``current`` with ``reference`` from the displacement ``initial`` (3,).
+
+    Aligns both ways, each scan once being the lines: the two answers must agree, and their mean is
+    the result. A direction in which the scans have no structure keeps ``initial`` and gets a wide
+    covariance. ``initial_covariance`` (3, 3) sets how far off the pairs are looked for.
+    """
+    if reference is None or current is None:
+        return MatchResult(initial, initial_covariance, "too_few_points")
+    forward = _Alignment(reference, current, initial, initial_covariance, config)
+    turned = inverse_jacobian(initial)
+    backward = _Alignment(
+        current, reference, inverse(initial), turned @ initial_covariance @ turned.T, config
+    )
+    backward_pose = inverse(backward.pose)
+    difference = between(forward.pose, backward_pose)
+    half = np.append(0.5 * difference[:2], 0.5 * difference[2])
+    pose = compose(forward.pose, half)
+    covariance = 0.5 * (forward.covariance() + backward.covariance_of_inverse())
+    figures = {
+        "overlap": min(forward.overlap, backward.overlap),
+        "residual": max(forward.scale, backward.scale),
+        "disagreement_m": float(np.hypot(*difference[:2])),
+        "disagreement_rad": float(abs(difference[2])),
+        "shift": _shift(initial, pose, initial_covariance),
+    }
+    return MatchResult(pose, covariance, _refusal(figures, config), figures)
+
+
+class _Alignment:
+    """Point-to-line ICP of one scan on the lines of another."""
+
+    def __init__(
+        self,
+        lines: LineFeatures,
+        moving: LineFeatures,
+        initial: Array,
+        initial_covariance: Array,
+        config: Matching,
+    ) -> None:
+        self._lines, self._moving = lines, moving
+        self._initial = initial
+        self._prior = np.linalg.inv(initial_covariance)
+        self.pose = np.array(initial, dtype=float)
+        self.overlap = 0.0
+        self.scale = 1.0
+        self._information = np.zeros((3, 3))
+        reach = 3.0 * float(np.sqrt(np.linalg.eigvalsh(initial_covariance[:2, :2])[-1]))
+        gate = max(config.pairing_distance, reach)
+        for _ in range(config.iterations):
+            step = self._iterate(gate)
+            narrow = gate <= config.pairing_distance
+            gate = max(config.pairing_distance, 0.7 * gate)
+            if narrow and np.hypot(*step[:2]) < 1e-4 and abs(step[2]) < 1e-5:
+                break
+
+    def _iterate(self, gate: float) -> Array:
+        lines, moving = self._lines, self._moving
+        points = transform_points(self.pose, moving.points)
+        distances, nearest = lines.tree.query(points)
+        turn = rotation(self.pose[2])
+        normals = lines.normals[nearest]
+        offsets = points - lines.centres[nearest]
+        residuals = np.sum(normals * offsets, axis=1)
+        facing = np.sum(normals * (moving.normals @ turn.T), axis=1)
+        paired = (
+            (distances < gate)
+            & lines.flat[nearest]
+            & moving.flat
+            & (facing > SAME_SIDE)
+            & (np.sum(offsets**2, axis=1) - residuals**2 < (2.0 * lines.reach[nearest]) ** 2)
+        )
+        self.overlap = float(paired.sum() / max(moving.flat.sum(), 1))
+        if paired.sum() < 3:
+            return np.zeros(3)
+        lever = (points - self.pose[:2])[paired]
+        normals, residuals = normals[paired], residuals[paired]
+        along = normals @ turn
+        spread = np.einsum("ni,nij,nj->n", along, moving.covariances[paired], along)
+        deviations = np.sqrt(spread + lines.variances[nearest][paired])
+        return self._solve(normals, lever, residuals, deviations)
+
+    def _solve(self, normals: Array, lever: Array, residuals: Array, deviations: Array) -> Array:
+        """One robust Gauss-Newton step, with the initial guess as a weak prior."""
+        normalised = residuals / deviations
+        self.scale = float(1.4826 * np.median(np.abs(normalised)))
+        width = CAUCHY * max(self.scale, 0.1)
+        weights = 1.0 / (1.0 + (normalised / width) ** 2)
+        jacobian = np.column_stack(
+            [normals, normals[:, 1] * lever[:, 0] - normals[:, 0] * lever[:, 1]]
+        )
+        jacobian /= deviations[:, None]
+        self._information = (jacobian * weights[:, None]).T @ jacobian
+        error = self.pose - self._initial
+        error[2] = wrap(error[2])
+        gradient = (jacobian * weights[:, None]).T @ normalised + self._prior @ error
+        step = -np.linalg.solve(self._information + self._prior, gradient)
+        self.pose = self.pose + step
+        self.pose[2] = wrap(self.pose[2])
+        return np.asarray(step)
+
+    def covariance(self) -> Array:
+        """Return the covariance (3, 3) of the pose from the pairs alone."""
+        information = self._information / max(self.scale, 1.0) ** 2
+        return np.asarray(np.linalg.inv(information + np.eye(3) / WIDEST))
+
+    def covariance_of_inverse(self) -> Array:
+        """Return the covariance (3, 3) of the inverted pose."""
+        jacobian = inverse_jacobian(self.pose)
+        return np.asarray(jacobian @ self.covariance() @ jacobian.T)
+
+
+def _shift(initial: Array, pose: Array, covariance: Array) -> float:
+    """Return the squared Mahalanobis distance of the result from the initial guess."""
+    error = pose - initial
+    error[2] = wrap(error[2])
+    return float(error @ np.linalg.solve(covariance, error))
+
+
+def _refusal(figures: dict[str, float], config: Matching) -> str:
+    if figures["overlap"] < config.overlap:
+        return "too_little_overlap"
+    if (
+        figures["disagreement_m"] > config.disagreement
+        or figures["disagreement_rad"] > config.disagreement_angle
+    ):
+        return "forward_and_backward_disagree"
+    if figures["shift"] > config.shift:
+        return "too_far_from_the_guess"
+    return ""

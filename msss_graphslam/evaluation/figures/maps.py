@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Maps: points by estimator side by side (the paper's Figure 12), and the occupancy grid."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+
+from msss_graphslam.core.types import Array
+from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment, dead_reckoned_points
+from msss_graphslam.evaluation.figures.style import Plate, colour, label, map_figure
+from msss_graphslam.evaluation.figures.trajectories import draw_ends, draw_points, draw_track
+
+__all__ = ["maps", "occupancy"]
+
+
+def maps(assessments: Sequence[Assessment]) -> Plate:
+    """Draw the same echoes as each estimator places them, with its trajectory."""
+    clouds = _clouds(assessments)
+    tracks = {name: path for run in assessments for name, path in run.trajectories.items()}
+    figure, panels = map_figure(
+        np.vstack(list(clouds.values()) + [path.planar[:, :2] for path in tracks.values()]),
+        panels=len(clouds),
+    )
+    for axes, (name, points) in zip(panels, clouds.items(), strict=True):
+        draw_points(axes, points)
+        draw_track(axes, tracks[name].planar, colour(name), label(name))
+        draw_ends(axes, tracks[name].planar, colour(name))
+        axes.set_title(label(name), color=colour(name))
+    return Plate("maps", "The map by estimator", _caption(assessments), figure)
+
+
+def occupancy(assessment: Assessment) -> Plate | None:
+    """Draw the occupancy grid and the trajectory; None where nothing was seen."""
+    grid = assessment.record.grid
+    if not grid.occupancy.size:
+        return None
+    (west, south), (rows, columns) = grid.origin, grid.occupancy.shape
+    east, north = west + columns * grid.resolution, south + rows * grid.resolution
+    figure, (axes,) = map_figure(np.array([[west, south], [east, north]]))
+    axes.grid(visible=False)
+    axes.imshow(
+        np.where(grid.occupancy < 0, -1, grid.occupancy.astype(int)),
+        cmap=_occupancy_colours(),
+        vmin=-1,
+        vmax=100,
+        origin="lower",
+        extent=(west, east, south, north),
+        interpolation="nearest",
+    )
+    shade = colour(assessment.estimator)
+    draw_track(axes, assessment.record.estimate.trajectory.planar, shade, "trajectory")
+    caption = (
+        f"Cells of {grid.resolution:g} m: white is water that a beam passed through, dark is where"
+        " echoes came from, grey was never seen."
+    )
+    return Plate("occupancy", "Occupancy grid", caption, figure)
+
+
+def _clouds(assessments: Sequence[Assessment]) -> dict[str, Array]:
+    clouds = {DEAD_RECKONING: dead_reckoned_points(assessments[-1].record.estimate)}
+    return clouds | {run.estimator: run.record.points[:, :2] for run in assessments}
+
+
+def _occupancy_colours() -> ListedColormap:
+    """Return grey for -1, then white to dark for 0 to 100 per cent."""
+    dark = np.array([0.10, 0.16, 0.24])
+    shares = np.linspace(0.0, 1.0, 101)[:, None]
+    return ListedColormap(np.vstack([[[0.85, 0.87, 0.89]], 1.0 - shares * (1.0 - dark)]))
+
+
+def _caption(assessments: Sequence[Assessment]) -> str:
+    thickness = {run.estimator: run.thickness for run in assessments}
+    thickness = {DEAD_RECKONING: assessments[-1].dead_reckoned_thickness} | thickness
+    known = ", ".join(
+        f"{label(name)} {100 * value:.1f} cm"
+        for name, value in thickness.items()
+        if value is not None
+    )
+    sharpness = (
+        f" Thickness of the walls (median standard deviation across): {known}." if known else ""
+    )
+    return (
+        "The same echoes, placed by each estimator's poses. Walls seen from several places fall"
+        f" on one another where the poses are right.{sharpness}"
+    )

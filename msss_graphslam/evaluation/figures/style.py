@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""How every figure looks: one colour an estimator, safe for the colour-blind (Okabe and Ito)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from msss_graphslam.core.types import Array
+
+__all__ = [
+    "ACCENT",
+    "MAP",
+    "MUTED",
+    "RC",
+    "REFUSALS",
+    "TRUTH",
+    "Plate",
+    "colour",
+    "label",
+    "map_figure",
+    "minutes",
+    "phrase",
+]
+
+TRUTH, MAP, MUTED, ACCENT = "#111111", "#76838f", "#5b6672", "#0072b2"
+REFUSALS = ("#d55e00", "#cc79a7", "#e69f00", "#56b4e9", "#009e73")
+_ESTIMATORS = {
+    "dead_reckoning": "#d55e00",
+    "uspic": "#cc79a7",
+    "chen2015": "#009e73",
+    "full": "#0072b2",
+}
+RC: dict[Any, Any] = {
+    "figure.dpi": 150,
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelcolor": "#333a42",
+    "axes.edgecolor": "#b5bdc6",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e4e8ec",
+    "grid.linewidth": 0.7,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "legend.title_fontsize": 10.0,
+    "lines.solid_capstyle": "round",
+}
+_WIDTH = 9.0
+_MOST_COLUMNS = 3
+_HIGHEST = 7.5
+_FLAT = 0.6
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A drawn figure, its file's name, its title and a caption that a person understands."""
+
+    name: str
+    title: str
+    caption: str
+    figure: Figure
+
+
+def colour(estimator: str) -> str:
+    """Return the estimator's colour, the same in every figure."""
+    return _ESTIMATORS.get(estimator, ACCENT)
+
+
+def phrase(name: str) -> str:
+    """Return a snake_case name in words."""
+    return name.replace("_", " ")
+
+
+def label(estimator: str) -> str:
+    """Return the estimator's name as a legend says it."""
+    return phrase(estimator)
+
+
+def minutes(stamps_ns: Array | np.ndarray, start_ns: int) -> Array:
+    """Return the time since the start [min]."""
+    return np.asarray((np.asarray(stamps_ns) - start_ns) / 60e9)
+
+
+def map_figure(positions: Array, panels: int = 1) -> tuple[Figure, list[Axes]]:
+    """Return a figure for some maps of equal extent, as high as positions (n, 2) ask."""
+    span = np.ptp(positions, axis=0) if len(positions) else np.ones(2)
+    aspect = float(np.clip((span[1] + 1.0) / (span[0] + 1.0), 0.15, 1.5))
+    columns = _columns(panels, aspect)
+    rows = -(-panels // columns)
+    height = min((_WIDTH / columns - 0.4) * aspect, _HIGHEST) + 0.6
+    figure = Figure(figsize=(_WIDTH, rows * height + 0.4), layout="compressed")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat:
+        axes.set_aspect("equal")
+    for axes in grid[-1]:
+        axes.set_xlabel("x, east [m]")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("y, north [m]")
+    for axes in grid.flat[panels:]:
+        axes.set_visible(False)
+    return figure, list(grid.flat[:panels])
+
+
+def _columns(panels: int, aspect: float) -> int:
+    """Return how many maps fit side by side: two flat ones are legible only one a row."""
+    if panels == 2 and aspect < _FLAT:
+        return 1
+    return panels if panels <= _MOST_COLUMNS else 2

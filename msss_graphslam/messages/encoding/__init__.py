@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Records to messages.
+
+Every function takes ``make(type_name, **fields)`` first, which returns the message; so the classes
+of rclpy and those of a bag library both serve. Numbers leave as ``float`` and ``int``, because
+rclpy turns a numpy scalar into 0.0 without a word; arrays leave as numpy arrays.
+"""
+
+from msss_graphslam.messages.encoding.clouds import map_cloud, occupancy_grid, scan_cloud
+from msss_graphslam.messages.encoding.graph import constraint, graph_markers
+from msss_graphslam.messages.encoding.poses import (
+    ground_truth,
+    odometry,
+    path,
+    pose,
+    tf_message,
+    transform,
+)
+from msss_graphslam.messages.encoding.primitives import Make, quaternion
+from msss_graphslam.messages.encoding.sensors import fluid_pressure, imu, laser_scan, twist
+
+__all__ = [
+    "Make",
+    "constraint",
+    "fluid_pressure",
+    "graph_markers",
+    "ground_truth",
+    "imu",
+    "laser_scan",
+    "map_cloud",
+    "occupancy_grid",
+    "odometry",
+    "path",
+    "pose",
+    "quaternion",
+    "scan_cloud",
+    "tf_message",
+    "transform",
+    "twist",
+]

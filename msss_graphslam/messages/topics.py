@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The topics of the package by relative name, with their message types and delivery."""
+
+from dataclasses import dataclass
+
+__all__ = [
+    "DVL",
+    "GROUND_TRUTH",
+    "IMU",
+    "INPUTS",
+    "OUTPUTS",
+    "PRESSURE",
+    "SONAR_PING",
+    "SONAR_RAW",
+    "STATIC_TRANSFORMS",
+    "Topic",
+    "find",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One topic; a latched one keeps its last message for late subscribers (transient local)."""
+
+    name: str
+    type_name: str
+    latched: bool = False
+
+    @property
+    def absolute(self) -> str:
+        """The name in a bag, without a namespace."""
+        return f"/{self.name}"
+
+    @property
+    def label(self) -> str:
+        """The name as one word, for the reasons of refusals."""
+        return self.name.replace("/", "_")
+
+    def matches(self, name: str) -> bool:
+        """Whether a topic's full name is this one, under any namespace."""
+        return name.endswith(self.absolute)
+
+
+SONAR_PING = Topic("sonar/ping", "sensor_msgs/msg/LaserScan")
+SONAR_RAW = Topic("sonar/raw", "std_msgs/msg/UInt8MultiArray")
+IMU = Topic("imu/data", "sensor_msgs/msg/Imu")
+PRESSURE = Topic("pressure", "sensor_msgs/msg/FluidPressure")
+DVL = Topic("dvl/twist", "geometry_msgs/msg/TwistWithCovarianceStamped")
+GROUND_TRUTH = Topic("ground_truth", "nav_msgs/msg/Odometry")
+
+STATIC_TRANSFORMS = Topic("tf_static", "tf2_msgs/msg/TFMessage", latched=True)
+
+INPUTS = (SONAR_PING, SONAR_RAW, IMU, PRESSURE, DVL, GROUND_TRUTH, STATIC_TRANSFORMS)
+
+OUTPUTS = (
+    Topic("odom", "nav_msgs/msg/Odometry"),
+    Topic("scan", "sensor_msgs/msg/PointCloud2"),
+    Topic("graph/constraints", "nav_msgs/msg/Odometry"),
+    Topic("graph/keyframes", "nav_msgs/msg/Path", latched=True),
+    Topic("graph/markers", "visualization_msgs/msg/MarkerArray", latched=True),
+    Topic("pose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
+    Topic("path", "nav_msgs/msg/Path", latched=True),
+    Topic("path/dead_reckoning", "nav_msgs/msg/Path", latched=True),
+    Topic("map/points", "sensor_msgs/msg/PointCloud2", latched=True),
+    Topic("map", "nav_msgs/msg/OccupancyGrid", latched=True),
+    Topic("tf", "tf2_msgs/msg/TFMessage"),
+)
+
+
+def find(name: str) -> Topic | None:
+    """Return the topic of a full name, under any namespace, or None for a foreign one.
+
+    Where two names fit (``graph/path`` and ``path``), the longer one is meant.
+    """
+    fitting = [topic for topic in INPUTS + OUTPUTS if topic.matches(name)]
+    return max(fitting, key=lambda topic: len(topic.name), default=None)

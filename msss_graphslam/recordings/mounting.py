@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the head sits on the vehicle: from a YAML file, or from a bag's static transforms."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+import yaml
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.errors import UserError
+from msss_graphslam.messages import Refusal, decoding, encoding
+from msss_graphslam.messages.frames import BASE_LINK, SONAR_LINK
+from msss_graphslam.recordings.typestore import make
+
+__all__ = ["Mounting"]
+
+
+@dataclass(frozen=True, slots=True)
+class Mounting:
+    """The pose of sonar_link in base_link, by the names of the configuration [m, rad]."""
+
+    mount_x: float = 0.0
+    mount_y: float = 0.0
+    mount_yaw: float = 0.0
+
+    @classmethod
+    def from_yaml(cls, path: Path | str) -> Self:
+        """Read ``sonar: {mount_x: ..., mount_y: ..., mount_yaw: ...}``; what is left out is 0.
+
+        Raises UserError where the file is not such.
+        """
+        values = _sonar_group(Path(path))
+        known = set(asdict(cls()))
+        if not set(values) <= known:
+            unknown = ", ".join(sorted(set(values) - known))
+            raise UserError(f"{path}: unknown under sonar: {unknown}; known: {', '.join(known)}")
+        sonar = Configuration().with_values({f"sonar.{key}": values[key] for key in values}).sonar
+        return cls(sonar.mount_x, sonar.mount_y, sonar.mount_yaw)
+
+    @classmethod
+    def from_transforms(cls, message: Any) -> Self | None:
+        """Return the mounting that a tf2_msgs/TFMessage holds, or None."""
+        for transform in message.transforms:
+            ends = transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/")
+            if ends == (BASE_LINK, SONAR_LINK):
+                try:
+                    x, y, _, _, _, yaw = decoding.placement(transform).tolist()
+                except Refusal:
+                    return None
+                return cls(x, y, yaw)
+        return None
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters of the configuration that say the same."""
+        return {f"sonar.{name}": value for name, value in asdict(self).items()}
+
+    def transforms(self, stamp_ns: int) -> Any:
+        """Return the tf2_msgs/TFMessage for the bag's static transforms."""
+        pose = np.array([self.mount_x, self.mount_y, 0.0, 0.0, 0.0, self.mount_yaw])
+        transform = encoding.transform(make, stamp_ns, pose, BASE_LINK, SONAR_LINK)
+        return encoding.tf_message(make, [transform])
+
+
+def _sonar_group(path: Path) -> dict[str, Any]:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise UserError(f"{path}: cannot be read as YAML ({error})".replace("\n", " ")) from error
+    group = content.get("sonar") if isinstance(content, dict) else None
+    if not isinstance(group, dict) or len(content) != 1:
+        raise UserError(f"{path}: must hold one group, sonar, with mount_x, mount_y, mount_yaw")
+    return {str(key): value for key, value in group.items()}

@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reading recordings: whole messages in log order, decoded into measurements."""
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.types import Measurement, Trajectory
+from msss_graphslam.errors import UserError
+from msss_graphslam.messages import decoding, topics
+from msss_graphslam.messages.topics import Topic
+from msss_graphslam.recordings.damage import Damage
+from msss_graphslam.recordings.files import mcap_files
+from msss_graphslam.recordings.mcap_reading import McapContent, RawMessage, merge
+from msss_graphslam.recordings.mounting import Mounting
+from msss_graphslam.recordings.source import Record, Source
+from msss_graphslam.recordings.typestore import UndecodableError, decode
+
+__all__ = ["RecordedTopic", "Recording", "open_recording"]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedTopic:
+    """One topic of a recording."""
+
+    name: str
+    type_name: str
+    count: int
+
+
+def open_recording(path: Path | str) -> "Recording":
+    """Open an mcap file or a rosbag2 folder; everything readable of it is found.
+
+    Raises UserError where there is no such thing, or nothing in it.
+    """
+    path = Path(path)
+    try:
+        contents = [McapContent(file, promised) for file, promised in mcap_files(path).items()]
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from error
+    if all(content.is_empty for content in contents):
+        raise UserError(f"{path}: not an mcap recording, or nothing of it is readable")
+    recording = Recording(path, contents)
+    if not recording.topics:
+        raise UserError(f"{path}: the recording holds no message ({recording.damage})")
+    return recording
+
+
+class Recording:
+    """A recording, open for reading.
+
+    Attributes
+    ----------
+    path
+        Where it lies.
+    topics
+        The topics with at least one readable message, by name.
+    start_ns, end_ns
+        First and last log time.
+    damage
+        What could not be read.
+    """
+
+    def __init__(self, path: Path, contents: list[McapContent]) -> None:
+        self.path = path
+        self.topics = _topics(contents)
+        self.damage = Damage.total(content.damage for content in contents)
+        blocks = [block for content in contents for block in content.blocks]
+        self.start_ns = min((block.first_ns for block in blocks), default=0)
+        self.end_ns = max((block.last_ns for block in blocks), default=0)
+        self._contents = contents
+
+    def messages(self, names: Collection[str] | None = None) -> Iterator[RawMessage]:
+        """Yield the messages of the topics (all without ``names``) in the order of log times."""
+        for message in merge(self._contents):
+            if names is None or message.channel.topic in names:
+                yield message
+
+    def find(self, topic: Topic) -> RecordedTopic | None:
+        """Return the recorded topic of that name, under any namespace.
+
+        The plain name goes before one in a namespace; several namespaces raise UserError.
+        """
+        fitting = [name for name in self.topics if topics.find(name) == topic]
+        if topic.absolute in fitting:
+            return self.topics[topic.absolute]
+        if len(fitting) > 1:
+            raise UserError(
+                f"{self.path}: several topics could be {topic.name}: {', '.join(fitting)};"
+                " keep one of them in the bag"
+            )
+        return self.topics[fitting[0]] if fitting else None
+
+    def measurements(
+        self, refusals: Counter[str], configuration: Configuration
+    ) -> Iterator[Measurement]:
+        """Yield what the sensors measured, in the order of log times.
+
+        What cannot be used is counted in ``refusals`` by reason. Raises UserError without a sonar.
+        """
+        self._require_sonar()
+        sensors = configuration.sensors
+        sources: list[Source[Measurement]] = [
+            Source(topics.SONAR_PING, decoding.beam),
+            Source(topics.IMU, decoding.inertial),
+            Source(topics.PRESSURE, lambda message: decoding.depth(message, sensors)),
+            Source(topics.DVL, decoding.body_velocity),
+        ]
+        return self._records(sources, refusals)
+
+    def ground_truth(self, refusals: Counter[str] | None = None) -> Trajectory | None:
+        """Return the true trajectory for evaluation, or None where there is none."""
+        source = Source(topics.GROUND_TRUTH, decoding.true_pose)
+        poses = list(self._records([source], Counter() if refusals is None else refusals))
+        if not poses:
+            return None
+        stamps = np.array([pose.stamp_ns for pose in poses], dtype=np.int64)
+        return Trajectory(stamps, np.array([pose.pose for pose in poses]))
+
+    def mounting(self) -> Mounting | None:
+        """Return where the head sits, if the bag's static transforms say so."""
+        recorded = self.find(topics.STATIC_TRANSFORMS)
+        if recorded is None or recorded.type_name != topics.STATIC_TRANSFORMS.type_name:
+            return None
+        for raw in self.messages([recorded.name]):
+            try:
+                message = decode(raw.data, recorded.type_name)
+            except UndecodableError:
+                continue
+            found = Mounting.from_transforms(message)
+            if found is not None:
+                return found
+        return None
+
+    def _records(
+        self, sources: Sequence[Source[Record]], refusals: Counter[str]
+    ) -> Iterator[Record]:
+        by_name: dict[str, Source[Record]] = {}
+        for source in sources:
+            recorded = self.find(source.topic)
+            if recorded is None:
+                continue
+            if recorded.type_name == source.topic.type_name:
+                by_name[recorded.name] = source
+            else:
+                refusals[f"{source.topic.label}_wrong_type"] += recorded.count
+        for raw in self.messages(by_name):
+            record = by_name[raw.channel.topic].record_of(raw, refusals)
+            if record is not None:
+                yield record
+
+    def _require_sonar(self) -> None:
+        recorded = self.find(topics.SONAR_PING)
+        if recorded is None:
+            raise UserError(
+                f"{self.path}: no topic {topics.SONAR_PING.absolute}, only"
+                f" {', '.join(sorted(self.topics))}; rename the sonar's topic, or make the bag"
+                " by `msss convert`"
+            )
+        if recorded.type_name != topics.SONAR_PING.type_name:
+            raise UserError(
+                f"{self.path}: {recorded.name} is of type {recorded.type_name}, must be"
+                f" {topics.SONAR_PING.type_name} with one beam a message; make the bag by"
+                " `msss convert`"
+            )
+
+
+def _topics(contents: list[McapContent]) -> dict[str, RecordedTopic]:
+    counts: Counter[str] = Counter()
+    types: dict[str, str] = {}
+    for content in contents:
+        for identifier, count in content.counts.items():
+            channel = content.channels[identifier]
+            schema = content.schemas.get(channel.schema_id)
+            counts[channel.topic] += count
+            types[channel.topic] = schema.name if schema else "unknown"
+    return {name: RecordedTopic(name, types[name], counts[name]) for name in sorted(counts)}

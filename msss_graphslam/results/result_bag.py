@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""result.mcap: the output topics of a run, to be looked at in Foxglove or RViz.
+
+What stands for the whole run (graph, paths, maps) comes first and holds the final result. The
+moving topics follow in the order of time, at most ten a second.
+"""
+
+import heapq
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from msss_graphslam.core.compounding import compose, compose_jacobians, inverse, wrap
+from msss_graphslam.core.types import Array, Estimate, Keyframe, Odometry, Stamps, Trajectory
+from msss_graphslam.messages import encoding
+from msss_graphslam.recordings.typestore import make
+from msss_graphslam.recordings.writer import BagWriter
+from msss_graphslam.results.record import RunRecord
+
+__all__ = ["write_result_bag"]
+
+_SHORTEST_PERIOD_NS = 100_000_000
+
+_Message = tuple[int, str, Any]
+"""Stamp [ns], topic, message."""
+
+
+def write_result_bag(path: Path, record: RunRecord) -> None:
+    """Write the bag; its bytes depend on the record alone."""
+    estimate = record.estimate
+    streams = (_standing(record), _moving(estimate), _scans(record))
+    with BagWriter(path) as bag:
+        for stamp, topic, message in heapq.merge(*streams, key=lambda entry: entry[0]):
+            bag.write(topic, message, stamp)
+
+
+def _standing(record: RunRecord) -> Iterator[_Message]:
+    estimate, grid = record.estimate, record.grid
+    start = int(estimate.trajectory.stamps_ns[0])
+    keyframes = record.keyframe_trajectory
+    yield start, "/graph/keyframes", encoding.path(make, keyframes)
+    markers = encoding.graph_markers(make, start, keyframes.planar, estimate.constraints)
+    yield start, "/graph/markers", markers
+    yield start, "/path", encoding.path(make, _thinned(estimate.trajectory))
+    dead_reckoning = encoding.path(make, _thinned(estimate.dead_reckoning), "odom")
+    yield start, "/path/dead_reckoning", dead_reckoning
+    yield start, "/map/points", encoding.map_cloud(make, start, record.points)
+    cells = encoding.occupancy_grid(make, start, grid.occupancy, grid.resolution, grid.origin)
+    yield start, "/map", cells
+
+
+def _moving(estimate: Estimate) -> Iterator[_Message]:
+    """Yield dead reckoning, the corrected pose where its covariance is known, and both frames."""
+    covariances = _beam_covariances(estimate.keyframes)
+    twists = _twists(estimate.dead_reckoning)
+    for row in _thinned_rows(estimate.trajectory.stamps_ns):
+        stamp = int(estimate.trajectory.stamps_ns[row])
+        corrected = estimate.trajectory.poses[row]
+        reckoned = estimate.dead_reckoning.poses[row]
+        odometry = Odometry(stamp, reckoned, np.zeros((6, 6)), twists[row], np.zeros((6, 6)))
+        yield stamp, "/odom", encoding.odometry(make, odometry)
+        if stamp in covariances:
+            yield stamp, "/pose", encoding.pose(make, stamp, corrected, covariances[stamp])
+        transforms = [
+            encoding.transform(make, stamp, _odom_in_map(corrected, reckoned), "map", "odom"),
+            encoding.transform(make, stamp, reckoned, "odom", "base_link"),
+        ]
+        yield stamp, "/tf", encoding.tf_message(make, transforms)
+
+
+def _scans(record: RunRecord) -> Iterator[_Message]:
+    """Yield each scan when it was whole, in its keyframe's frame, and the edges that end there."""
+    poses, edges = record.keyframe_trajectory.poses, defaultdict(list)
+    for edge in record.estimate.constraints:
+        if edge.accepted:
+            edges[edge.second].append(edge)
+    for number, keyframe in enumerate(record.estimate.keyframes):
+        scan, frame = keyframe.scan, f"keyframe_{number}"
+        placement = encoding.transform(make, scan.stamp_ns, poses[number], "map", frame)
+        yield scan.end_stamp_ns, "/tf", encoding.tf_message(make, [placement])
+        yield scan.end_stamp_ns, "/scan", encoding.scan_cloud(make, scan, frame)
+        for edge in edges[number]:
+            message = encoding.constraint(make, scan.stamp_ns, edge)
+            yield scan.end_stamp_ns, "/graph/constraints", message
+
+
+def _beam_covariances(keyframes: tuple[Keyframe, ...]) -> dict[int, Array]:
+    """Return the covariance (3, 3) of the corrected pose by stamp, for the beams of the scans."""
+    covariances: dict[int, Array] = {}
+    for keyframe in keyframes:
+        scan = keyframe.scan
+        by_frame, by_motion = compose_jacobians(keyframe.pose, scan.motion)
+        spread = by_frame @ keyframe.covariance @ np.swapaxes(by_frame, -1, -2)
+        spread += by_motion @ scan.motion_covariances @ np.swapaxes(by_motion, -1, -2)
+        covariances.update(zip(scan.beam_stamps_ns.tolist(), spread, strict=True))
+    return covariances
+
+
+def _odom_in_map(corrected: Array, reckoned: Array) -> Array:
+    planar = compose(corrected[[0, 1, 5]], inverse(reckoned[[0, 1, 5]]))
+    return np.array([planar[0], planar[1], corrected[2] - reckoned[2], 0.0, 0.0, planar[2]])
+
+
+def _twists(trajectory: Trajectory) -> Array:
+    """Return the velocity (n, 6) in the body from pose to pose; only surge, sway and yaw rate."""
+    planar, twists = trajectory.planar, np.zeros((len(trajectory.poses), 6))
+    if len(planar) > 1:
+        seconds = np.diff(trajectory.stamps_ns)[:, None] * 1e-9
+        steps = compose(inverse(planar[:-1]), planar[1:])
+        steps[:, 2] = wrap(steps[:, 2])
+        twists[1:, [0, 1, 5]] = steps / seconds
+    return twists
+
+
+def _thinned(trajectory: Trajectory) -> Trajectory:
+    rows = _thinned_rows(trajectory.stamps_ns)
+    return Trajectory(trajectory.stamps_ns[rows], trajectory.poses[rows])
+
+
+def _thinned_rows(stamps_ns: Stamps) -> list[int]:
+    """Return the rows that are at least the shortest period apart, and the last."""
+    rows, last = [], None
+    for row, stamp in enumerate(stamps_ns.tolist()):
+        if last is None or stamp - last >= _SHORTEST_PERIOD_NS or row == len(stamps_ns) - 1:
+            rows.append(row)
+            last = stamp
+    return rows

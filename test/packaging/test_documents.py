@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the documents name exists."""
+
+import re
+from functools import reduce
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAPER_TO_CODE = (ROOT / "docs" / "paper_to_code.md").read_text(encoding="utf-8")
+PACKAGES = "core|config|evaluation|results|simulation|recordings|messages|offline"
+NAMES = sorted(set(re.findall(rf"`((?:{PACKAGES})\.[\w.]+)`", PAPER_TO_CODE)))
+DOCUMENTS = ["README.md", "CONTRIBUTING.md", "bags/README.md", "docs/paper_to_code.md"]
+
+
+def look_up(name: str) -> object:
+    """Return the module, or what a module holds; AttributeError where there is no such thing."""
+    parts = f"msss_graphslam.{name}".split(".")
+    for length in range(len(parts), 1, -1):
+        try:
+            module = import_module(".".join(parts[:length]))
+        except ModuleNotFoundError:
+            continue
+        return reduce(getattr, parts[length:], module)
+    raise AttributeError(name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_the_paper_is_mapped_to_exists(name: str) -> None:
+    assert look_up(name) is not None
+
+
+@pytest.mark.parametrize("name", ["core.spic.no_such_thing", "core.no_such_module"])
+def test_a_name_that_does_not_exist_would_be_noticed(name: str) -> None:
+    with pytest.raises(AttributeError):
+        look_up(name)
+
+
+@pytest.mark.parametrize("number", range(1, 16))
+def test_every_equation_has_its_place(number: int) -> None:
+    equations = PAPER_TO_CODE.partition("## Equations")[2].partition("## Symbols")[0]
+    assert f"({number})" in equations
+
+
+@pytest.mark.parametrize("number", range(1, 17))
+def test_every_figure_has_its_place(number: int) -> None:
+    figures = PAPER_TO_CODE.partition("## Figures")[2].partition("## Beyond")[0]
+    rows = [line.split("|")[1] for line in figures.splitlines() if line.startswith("| ")]
+    assert str(number) in re.findall(r"\d+", " ".join(rows))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_links_to_files_lead_somewhere(document: str) -> None:
+    path = ROOT / document
+    targets = re.findall(r"\]\((?!https?:)([^)#]+)", path.read_text(encoding="utf-8"))
+    assert [target for target in targets if not (path.parent / target).exists()] == []
