@@ -9,10 +9,6 @@ STAMP := $(VENV)/.ready-$(FLAVOUR)
 VENV_OPTIONS := $(if $(filter jazzy,$(FLAVOUR)),--system-site-packages)
 OTHER_FLAVOUR := $(filter-out $(STAMP),$(wildcard $(VENV)/.ready-*))
 
-SAMPLE := bags/pond
-SAMPLE_WORLD := pond
-SAMPLE_OPTIONS := --seed 1
-
 # One thread a process: the tests are spread over the cores already.
 export OMP_NUM_THREADS ?= 1
 # Plug-ins of a sourced ROS are older than this pytest: only our own are loaded.
@@ -29,6 +25,7 @@ setup: $(STAMP) ## make .venv with everything in it
 $(STAMP): requirements/base.txt requirements/$(FLAVOUR).txt setup.py setup.cfg pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "$(PYTHON) is older than Python 3.11; name a newer one: make PYTHON=python3.12" >&2; exit 1; }
+	@echo "Setting up $(VENV) ($(FLAVOUR)); this takes about a minute"
 	$(if $(OTHER_FLAVOUR),rm -rf $(VENV))
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV_OPTIONS) $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements/$(FLAVOUR).txt
@@ -36,8 +33,7 @@ $(STAMP): requirements/base.txt requirements/$(FLAVOUR).txt setup.py setup.cfg p
 	@touch $@
 
 demo: $(STAMP) ## run the sample bag and show the result
-	$(BIN)/msss run $(SAMPLE) --out demo
-	@echo "Open demo/report.html"
+	$(BIN)/msss run bags/pond --out demo
 
 test: $(STAMP) ## pass the tests
 	$(PYTEST) -n auto --dist worksteal $(TESTS)
@@ -49,8 +45,7 @@ lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/lint-imports
 
 sample-bag: $(STAMP) ## make the sample bag anew
-	rm -rf $(SAMPLE)
-	$(BIN)/msss simulate $(SAMPLE_WORLD) $(SAMPLE_OPTIONS) --out $(SAMPLE)
+	$(BIN)/python bags/make_sample.py
 
 defaults: $(STAMP) ## write config/ and the README's table from the configuration
 	$(BIN)/python -m msss_graphslam.config.documentation

@@ -51,7 +51,6 @@ setup(
         "rich",
         "rosbags",
         "scipy",
-        "setuptools",
         "zstandard",
     ],
     extras_require={"test": ["hypothesis", "pytest"]},

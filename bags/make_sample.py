@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Make the sample bag: ``python bags/make_sample.py`` (``make sample-bag``)."""
+"""Make the sample bag and note its checksum: ``python bags/make_sample.py``."""
 
+import hashlib
+import re
 import shutil
 import tempfile
 from dataclasses import replace
@@ -10,19 +12,24 @@ from pathlib import Path
 from msss_graphslam.simulation.recording import simulate
 from msss_graphslam.simulation.worlds import world_named
 
-SAMPLE = Path(__file__).with_name("pond")
+FOLDER = Path(__file__).parent
+SAMPLE = FOLDER / "pond"
 SEED = 1
 BINS = 160
 """A setting of the head: 12.5 cm a bin to 20 m; the pond of the paper was scanned with 5.7 cm."""
 
 
 def main() -> None:
-    """Write the bag, in place of the one that is there."""
+    """Write the bag in place of the one that is there, and its checksum into the README."""
     pond = world_named("pond")
     with tempfile.TemporaryDirectory() as scratch:
         made = simulate(pond, SEED, Path(scratch), sonar=replace(pond.sonar, bins=BINS))
         shutil.rmtree(SAMPLE, ignore_errors=True)
         shutil.move(made.bag, SAMPLE)
+    content = next(SAMPLE.glob("*.mcap")).read_bytes()
+    readme = FOLDER / "README.md"
+    noted = re.sub(r"\b[0-9a-f]{64}\b", hashlib.sha256(content).hexdigest(), readme.read_text())
+    readme.write_text(noted)
 
 
 if __name__ == "__main__":

@@ -5,13 +5,14 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 __all__ = ["Done", "assert_one_line", "msss"]
 
 Done = subprocess.CompletedProcess[str]
 
 
-def msss(*arguments: object) -> Done:
+def msss(*arguments: object, cwd: Path | None = None) -> Done:
     """Run the tool, its output in pipes."""
     return subprocess.run(
         [sys.executable, "-m", "msss_graphslam", *map(str, arguments)],
@@ -19,8 +20,14 @@ def msss(*arguments: object) -> Done:
         text=True,
         timeout=120,
         check=False,
-        env={**os.environ, "COLUMNS": "80"},
+        cwd=cwd,
+        env={**os.environ, "COLUMNS": "80", "PYTHONPATH": os.pathsep.join(_search_path())},
     )
+
+
+def _search_path() -> list[str]:
+    """Return where this process finds modules, the package also where it is not installed."""
+    return [str(Path(__file__).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
 
 
 def assert_one_line(done: Done) -> None:

@@ -5,7 +5,7 @@
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import rich.box
 import rich.console
@@ -16,10 +16,10 @@ from rich.markup import escape
 
 from msss_graphslam.cli.exit_codes import ExitCode
 
-__all__ = ["Console", "Progress", "Row"]
+if TYPE_CHECKING:
+    from msss_graphslam.offline.estimation import Progress
 
-Progress = Callable[[float, str], None]
-"""Takes the finished fraction, 0 to 1, and what is being done."""
+__all__ = ["Console", "Row"]
 
 Row = Sequence[str]
 
@@ -39,7 +39,7 @@ class Console:
         self._err = _rich_console(stderr=True)
 
     @contextmanager
-    def progress(self) -> Iterator[Progress]:
+    def progress(self) -> Iterator["Progress"]:
         """Give a callable that shows how far the work is, until it is done."""
         if self._quiet:
             yield _say_nothing

@@ -19,7 +19,7 @@ from msss_graphslam.cli.commands import (
 )
 from msss_graphslam.cli.console import Console
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.options import Parser, add_quiet
+from msss_graphslam.cli.options import Parser, add_manner
 from msss_graphslam.errors import UserError
 
 __all__ = ["main"]
@@ -38,7 +38,7 @@ _COMMANDS: dict[str, Command] = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``msss`` with the given arguments, or the process's; return the exit code."""
     parsed = _parser().parse_args(arguments)
-    console = Console(quiet=parsed.quiet, as_json=getattr(parsed, "json", False))
+    console = Console(quiet=parsed.quiet, as_json=parsed.json)
     try:
         return int(parsed.execute(parsed, console))
     except UserError as error:
@@ -61,7 +61,7 @@ def _parser() -> Parser:
     for name, command in _COMMANDS.items():
         subparser = commands.add_parser(name, help=command.SUMMARY, description=command.SUMMARY)
         command.add_arguments(subparser)
-        add_quiet(subparser)
+        add_manner(subparser)
         subparser.set_defaults(execute=command.execute)
     return parser
 

@@ -18,9 +18,8 @@ __all__ = [
     "add_bag",
     "add_configuration",
     "add_estimator",
-    "add_json",
+    "add_manner",
     "add_output",
-    "add_quiet",
     "configuration_of",
 ]
 
@@ -40,14 +39,10 @@ def add_bag(parser: ArgumentParser) -> None:
     parser.add_argument("bag", type=Path, metavar="BAG", help="mcap file or rosbag2 folder")
 
 
-def add_quiet(parser: ArgumentParser) -> None:
-    """Add --quiet."""
-    parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
-
-
-def add_json(parser: ArgumentParser) -> None:
-    """Add --json."""
+def add_manner(parser: ArgumentParser) -> None:
+    """Add --json and --quiet, which every command has."""
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
 
 
 def add_output(parser: ArgumentParser, content: str) -> None:

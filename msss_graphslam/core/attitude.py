@@ -14,41 +14,35 @@ from msss_graphslam.core.types import Array
 __all__ = ["level", "rate_derivatives", "rate_matrix", "rotation_derivatives", "rotation_matrix"]
 
 
-def _axis_rotations(angles: Array) -> tuple[Array, Array, Array]:
+def rotation_matrix(angles: Array) -> Array:
+    """Return the body-to-world rotation (3, 3): the upper left block of J(X), equation 6."""
     roll, pitch, yaw = (float(angle) for angle in angles)
     cr, sr = math.cos(roll), math.sin(roll)
     cp, sp = math.cos(pitch), math.sin(pitch)
     cy, sy = math.cos(yaw), math.sin(yaw)
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-    return about_x, about_y, about_z
-
-
-_GENERATORS = (
-    np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
-    np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]),
-    np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]),
-)
-
-
-def rotation_matrix(angles: Array) -> Array:
-    """Return the body-to-world rotation (3, 3): the upper left block of J(X), equation 6."""
-    about_x, about_y, about_z = _axis_rotations(angles)
-    return np.asarray(about_z @ about_y @ about_x)
-
-
-def rotation_derivatives(angles: Array, vector: Array) -> Array:
-    """Return d(rotation_matrix @ vector)/d(angles), (3, 3)."""
-    about_x, about_y, about_z = _axis_rotations(angles)
-    turn_x, turn_y, turn_z = _GENERATORS
-    rolled = about_x @ vector
-    pitched = about_y @ rolled
-    return np.column_stack(
+    return np.array(
         [
-            about_z @ about_y @ (turn_x @ rolled),
-            about_z @ (turn_y @ pitched),
-            turn_z @ (about_z @ pitched),
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sr * sy * sp + cy * cr, sy * sp * cr - sr * cy],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def rotation_derivatives(rotation: Array, yaw: float, vector: Array) -> Array:
+    """Return d(rotation_matrix(angles) @ vector)/d(angles), (3, 3).
+
+    Turning about an axis moves the turned vector by its cross product with that axis: roll's is
+    the body's x, pitch's the y axis turned by ``yaw`` [rad], yaw's the world's z.
+    """
+    x, y, z = (rotation @ vector).tolist()
+    about_roll = rotation @ np.array([0.0, -vector[2], vector[1]])
+    cy, sy = math.cos(yaw), math.sin(yaw)
+    return np.array(
+        [
+            [about_roll[0], cy * z, -y],
+            [about_roll[1], sy * z, x],
+            [about_roll[2], -sy * y - cy * x, 0.0],
         ]
     )
 

@@ -72,7 +72,8 @@ class DeadReckoning:
         if measurement.stamp_ns < self._stamp_ns:
             self._refused["dead_reckoning_late"] += 1
             return []
-        self._predict(ekf, measurement)
+        if isinstance(measurement, Inertial | BodyVelocity) or not self._has_inertial(measurement):
+            self._predict(ekf, measurement)
         match measurement:
             case Inertial():
                 self._inertial_ns = measurement.stamp_ns
@@ -82,7 +83,7 @@ class DeadReckoning:
                 self._update_depth(ekf, measurement)
             case BodyVelocity():
                 self._update_velocity(ekf, measurement)
-            case _ if not self._has_inertial():
+            case _ if not self._has_inertial(measurement):
                 return [self._odometry(ekf)]
         return []
 
@@ -94,15 +95,15 @@ class DeadReckoning:
             self._rates = measurement.angular_velocity
             if rates is not None and self._rates is not None:
                 rates = 0.5 * (rates + self._rates)
-        if rates is None or not self._has_inertial():
+        if rates is None or not self._has_inertial(measurement):
             ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise)
         else:
             ekf.predict(interval, rates, self._config.gyro_noise)
 
-    def _has_inertial(self) -> bool:
+    def _has_inertial(self, now: Measurement) -> bool:
         if self._inertial_ns is None:
             return False
-        return self._stamp_ns - self._inertial_ns <= self._config.sensor_timeout * 1e9
+        return now.stamp_ns - self._inertial_ns <= self._config.sensor_timeout * 1e9
 
     def _update_orientation(self, ekf: KalmanFilter, inertial: Inertial) -> None:
         if inertial.orientation is None:

@@ -42,7 +42,9 @@ def transition(
     predicted[ATTITUDE] += interval * rate_matrix(angles) @ rates  # eq. 6
     predicted[VELOCITY_ERROR] *= decay
     jacobian = np.eye(SIZE)
-    jacobian[POSITION, ATTITUDE] = interval * rotation_derivatives(angles, velocity)
+    jacobian[POSITION, ATTITUDE] = interval * rotation_derivatives(
+        to_world, float(angles[2]), velocity
+    )
     jacobian[POSITION, VELOCITY_ERROR] = interval * to_world
     jacobian[ATTITUDE, ATTITUDE] += interval * rate_derivatives(angles, rates)
     jacobian[VELOCITY_ERROR, VELOCITY_ERROR] *= decay

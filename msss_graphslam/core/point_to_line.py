@@ -33,6 +33,9 @@ SAME_SIDE = 0.7
 CAUCHY = 2.0
 """Residual, in robust standard deviations, at which a pair's weight is halved."""
 
+STEP, STEP_ANGLE = 5e-4, 1e-4
+"""An iteration that moves less than this has converged [m], [rad]."""
+
 WIDEST = 1e4
 """Variance [m^2, rad^2] that stands for a direction of which the scans say nothing."""
 
@@ -96,7 +99,7 @@ class _Alignment:
             step = self._iterate(gate)
             narrow = gate <= config.pairing_distance
             gate = max(config.pairing_distance, 0.7 * gate)
-            if narrow and np.hypot(*step[:2]) < 1e-4 and abs(step[2]) < 1e-5:
+            if narrow and np.hypot(*step[:2]) < STEP and abs(step[2]) < STEP_ANGLE:
                 break
 
     def _iterate(self, gate: float) -> Array:

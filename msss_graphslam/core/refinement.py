@@ -22,11 +22,11 @@ from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["Refined", "refine"]
 
-PASSES = 4
-SETTLED = 0.005
-"""Passes end when no keyframe moves farther than this [m]."""
+PASSES = 3
+SETTLED = 0.01
+"""A scan in which no beam's pose moves farther than this [m] stays as it is."""
 
-UNCERTAINTY = np.diag([0.25**2, 0.25**2, 0.035**2])
+UNCERTAINTY = np.diag([0.15**2, 0.15**2, 0.02**2])
 """How far off a pair's displacement may still be before a pass (3, 3)."""
 
 
@@ -48,31 +48,39 @@ def refine(
     progress: Callable[[float], None],
 ) -> Refined:
     """Lay out, match and optimise until the poses settle; the nodes' scans are replaced."""
-    edges = list(constraints)
+    edges, moved_scans = list(constraints), set(range(len(nodes)))
+    _lay_out_moved(nodes, poses, matcher)
     for number in range(PASSES):
-        _lay_out_all(nodes, poses, matcher)
-        edges = [_again(entry, nodes, poses, matcher) for entry in edges]
+        edges = [
+            _again(edge, nodes, poses, matcher)
+            if moved_scans & {edge.first, edge.second}
+            else edge
+            for edge in edges
+        ]
         back_end = BackEnd(config)
         for pose in poses:
             back_end.add_keyframe(pose)
-        refined = back_end.update([entry for entry in edges if entry.accepted])
-        moved = float(np.hypot(*(refined - poses)[:, :2].T).max())
-        poses = refined
+        poses = back_end.update([edge for edge in edges if edge.accepted])
+        moved_scans = _lay_out_moved(nodes, poses, matcher)
         progress((number + 1) / PASSES)
-        if moved < SETTLED:
+        if not moved_scans:
             break
-    _lay_out_all(nodes, poses, matcher)
     return Refined(poses, back_end, edges)
 
 
-def _lay_out_all(nodes: Sequence[Node], poses: Array, matcher: ScanMatcher) -> None:
+def _lay_out_moved(nodes: Sequence[Node], poses: Array, matcher: ScanMatcher) -> set[int]:
+    """Make anew the scans in which the poses have changed the motion; return their numbers."""
+    moved = set()
     for number, (node, following) in enumerate(pairwise(nodes)):
         scan = node.first_scan
         end = between(scan.odometry, following.first_scan.odometry)
         target = between(poses[number], poses[number + 1])
         motion = correct_motion(scan.motion, end, target, closed_form).poses
-        node.scan = lay_out(scan, motion, node.scan.twist_covariance)
-        node.prepared = matcher.prepare(node.scan)
+        if float(np.abs(motion - node.scan.motion)[:, :2].max()) > SETTLED:
+            node.scan = lay_out(scan, motion, node.scan.twist_covariance)
+            node.prepared = matcher.prepare(node.scan)
+            moved.add(number)
+    return moved
 
 
 def _again(

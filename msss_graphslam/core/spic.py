@@ -21,6 +21,9 @@ __all__ = ["match"]
 FEWEST_POINTS = 10
 """Points of a scan, and pairs of two scans, below which no displacement is sought."""
 
+SECTORS = 24
+"""Parts of a scan whose errors count as independent."""
+
 LARGEST_VARIANCE = 1e4
 """Variance of a displacement [m^2, rad^2] above which the scans say nothing of it."""
 
@@ -107,9 +110,10 @@ def _gauss_newton_step(pairs: Pairs) -> Array:
 def _covariance(pairs: Pairs, reference: Points) -> Array:
     """Return the covariance (3, 3) of the displacement where the steps have died out.
 
-    Steps die out where s = sum J' W e is zero. Its covariance B is estimated from the terms of
-    the sum, and A, its derivative by the displacement, gives inv(A) B inv(A)': the robust
-    covariance of an estimator (P. Huber, 1967).
+    Steps die out where s = sum J' W e is zero. Its covariance B is estimated from the parts that
+    sectors of the scan have in the sum, since errors of neighbouring points are alike; and A, its
+    derivative by the displacement, gives inv(A) B inv(A)': the robust covariance of an estimator
+    (P. Huber, 1967; in clusters K.-Y. Liang and S. Zeger, 1986).
     """
     # Deviation: the inverse of the normal matrix takes pairs for the same point seen twice. They
     # are samples of one surface: moved along it, a point finds another partner and its error does
@@ -121,7 +125,9 @@ def _covariance(pairs: Pairs, reference: Points) -> Array:
     terms = (weighted @ pairs.errors[..., None])[..., 0]
     across = normals[:, :, None] * (normals[:, None, :] @ pairs.jacobians)
     inverse = np.linalg.inv((weighted @ across).sum(axis=0))
-    covariance = inverse @ (terms.T @ terms) @ inverse.T
+    sectors = min(SECTORS, len(terms))
+    parts = np.add.reduceat(terms, np.arange(sectors) * len(terms) // sectors, axis=0)
+    covariance = inverse @ (parts.T @ parts) @ inverse.T * sectors / (sectors - 1)
     return np.asarray(0.5 * (covariance + covariance.T))
 
 

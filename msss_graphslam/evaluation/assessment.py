@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from msss_graphslam.core.compounding import transform_points, wrap
+from msss_graphslam.core.compounding import between, compose, transform_points, wrap
 from msss_graphslam.core.types import Array, Estimate, Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.evaluation.covariance_consistency import Consistency, consistency
@@ -24,13 +24,15 @@ class Assessment:
     """A run and what was measured of it.
 
     ``errors`` are by estimator: the run's own and dead reckoning; empty without truth, as
-    ``online_errors`` and ``keyframe_consistency`` are None. ``truth_note`` says why a truth that
-    exists could not be used. Thicknesses are those of the map's walls [m].
+    ``online_errors`` and the keyframes' are None. ``keyframe_errors`` (k, 3) are estimated minus
+    true poses relative to the first keyframe, NaN where the truth is silent. ``truth_note`` says
+    why a truth that exists could not be used. Thicknesses are those of the map's walls [m].
     """
 
     record: RunRecord
     errors: dict[str, PoseErrors]
     online_errors: PoseErrors | None
+    keyframe_errors: Array | None
     keyframe_consistency: Consistency | None
     thickness: float | None
     dead_reckoned_thickness: float | None
@@ -59,7 +61,7 @@ class Assessment:
 def assess(record: RunRecord) -> Assessment:
     """Measure what can be measured of the run, and make up nothing where there is no truth."""
     errors: dict[str, PoseErrors] = {}
-    online, honesty, note = None, None, ""
+    online, keyframes, note = None, None, ""
     estimate = record.estimate
     if record.truth is not None:
         try:
@@ -68,14 +70,15 @@ def assess(record: RunRecord) -> Assessment:
                 estimate.estimator: position_errors(estimate.trajectory, record.truth),
             }
             online = position_errors(estimate.online, record.truth)
-            honesty = _keyframe_consistency(estimate, errors[estimate.estimator])
+            keyframes = _keyframe_errors(record, errors[estimate.estimator])
         except UserError as error:
             note = str(error)
     return Assessment(
         record=record,
         errors=errors,
         online_errors=online,
-        keyframe_consistency=honesty,
+        keyframe_errors=keyframes,
+        keyframe_consistency=_keyframe_consistency(estimate, keyframes),
         thickness=wall_thickness(record.points),
         dead_reckoned_thickness=wall_thickness(dead_reckoned_points(estimate)),
         truth_note=note,
@@ -88,17 +91,32 @@ def dead_reckoned_points(estimate: Estimate) -> Array:
     return np.vstack(placed) if placed else np.zeros((0, 2))
 
 
-def _keyframe_consistency(estimate: Estimate, errors: PoseErrors) -> Consistency | None:
-    """Compare the keyframes' errors with their covariances; the first is fixed and left out."""
-    frames = estimate.keyframes[1:]
-    stamps = np.array([frame.scan.stamp_ns for frame in frames], dtype=np.int64)
-    truth, covered = interpolate(_planar_trajectory(errors), stamps)
-    covariances = np.array([frame.covariance for frame in frames])
-    if not covered.any() or np.linalg.eigvalsh(covariances).min() <= 0.0:
+def _keyframe_errors(record: RunRecord, errors: PoseErrors) -> Array | None:
+    """Return estimated minus true poses with the first keyframe put upon its true pose.
+
+    The first keyframe is the graph's gauge: covariances are relative to it, heading included.
+    """
+    keyframes = record.keyframe_trajectory
+    truth, covered = interpolate(_planar_trajectory(errors), keyframes.stamps_ns)
+    if not covered.any():
         return None
-    difference = np.array([frame.pose for frame in frames]) - truth
+    first = int(np.argmax(covered))
+    relative = between(truth[first], truth)
+    difference = keyframes.planar - compose(keyframes.planar[first], relative)
     difference[:, 2] = wrap(difference[:, 2])
-    return consistency(difference[covered], covariances[covered])
+    difference[~covered] = np.nan
+    return difference
+
+
+def _keyframe_consistency(estimate: Estimate, errors: Array | None) -> Consistency | None:
+    """Compare the keyframes' errors with their covariances; the first is fixed and left out."""
+    if errors is None or len(errors) < 2:
+        return None
+    covariances = np.array([frame.covariance for frame in estimate.keyframes[1:]])
+    known = np.isfinite(errors[1:, 0])
+    if not known.any() or np.linalg.eigvalsh(covariances[known]).min() <= 0.0:
+        return None
+    return consistency(errors[1:][known], covariances[known])
 
 
 def _planar_trajectory(errors: PoseErrors) -> Trajectory:

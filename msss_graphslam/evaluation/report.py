@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.evaluation.assessment import Assessment
@@ -83,7 +83,7 @@ def _write(
     directory.write_report(html)
 
 
-def _template() -> Any:
+def _template() -> Template:
     environment = Environment(
         loader=PackageLoader("msss_graphslam.evaluation"),
         autoescape=True,

@@ -3,6 +3,7 @@
 """What a recording holds, what it lacks, and what that costs."""
 
 from collections import Counter, defaultdict
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from msss_graphslam.recordings.damage import Damage
 from msss_graphslam.recordings.reader import RecordedTopic, Recording, open_recording
 from msss_graphslam.recordings.sonar_settings import SonarObserver, SonarSettings
 
-__all__ = ["Gap", "InspectionReport", "Lack", "TopicReport", "inspect"]
+__all__ = ["Gap", "InspectionReport", "Lack", "TopicReport", "inspect", "lacks"]
 
 # A silence longer than this many median periods is a gap: at least three messages are missing.
 _GAP_PERIODS = 3.5
@@ -116,7 +117,7 @@ def inspect(path: Path | str, configuration: Configuration | None = None) -> Ins
             for topic in recording.topics.values()
         ),
         sonar=settings,
-        lacks=tuple(_lacks(recording, inertial)),
+        lacks=tuple(lacks(recording, inertial)),
         refused=dict(refused),
         damage=recording.damage,
         problem=problem,
@@ -152,14 +153,15 @@ def _parts(sample: Inertial) -> set[str]:
     return {name for name, value in given.items() if value is not None}
 
 
-def _lacks(recording: Recording, inertial: set[str]) -> list[Lack]:
-    lacks = [
+def lacks(recording: Recording, inertial: Collection[str] = ()) -> list[Lack]:
+    """Return what a recording does not have; ``inertial`` names the parts its IMU does give."""
+    missing = [
         Lack(topic.absolute, cost) for topic, cost in _COSTS.items() if not recording.find(topic)
     ]
-    if inertial == {"angular_velocity"}:
-        lacks.append(
+    if set(inertial) == {"angular_velocity"}:
+        missing.append(
             Lack("imu orientation", "heading is integrated from rates; roll, pitch are 0")
         )
-    if inertial == {"orientation"}:
-        lacks.append(Lack("imu angular velocity", "heading follows the compass and its noise"))
-    return lacks
+    if set(inertial) == {"orientation"}:
+        missing.append(Lack("imu angular velocity", "heading follows the compass and its noise"))
+    return missing

@@ -7,10 +7,10 @@ is a record whose content holds more records, compressed and with a checksum.
 """
 
 import re
+import struct
 from collections.abc import Iterator
 from io import BytesIO
 from mmap import ACCESS_READ, mmap
-from struct import Struct, error
 from typing import BinaryIO, NamedTuple
 
 from mcap.data_stream import ReadDataStream
@@ -26,7 +26,15 @@ __all__ = ["MAGIC", "READ_ERRORS", "Record", "inner_records", "load", "walk"]
 
 MAGIC = b"\x89MCAP0\r\n"
 
-READ_ERRORS = (McapError, ZstdError, RuntimeError, ValueError, MemoryError, OverflowError, error)
+READ_ERRORS = (
+    McapError,
+    ZstdError,
+    RuntimeError,
+    ValueError,
+    MemoryError,
+    OverflowError,
+    struct.error,
+)
 """Whatever the libraries raise on bytes that are not what they should be."""
 
 _WANTED = {
@@ -37,8 +45,8 @@ _WANTED = {
     Opcode.CHUNK,
     Opcode.STATISTICS,
 }
-_PREFIX = Struct("<BQ")
-_FOOTER = Struct("<BQQQI8s")
+_PREFIX = struct.Struct("<BQ")
+_FOOTER = struct.Struct("<BQQQI8s")
 _CHUNK_START = re.compile(
     rb"\x06.{4}\x00{4}"  # opcode, length
     rb".{16}.{4}\x00{4}.{4}"  # times, unpacked size, checksum

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.types import Measurement, Trajectory
+from msss_graphslam.core.types import Beam, Measurement, Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages import decoding, topics
 from msss_graphslam.messages.topics import Topic
@@ -20,6 +20,8 @@ from msss_graphslam.recordings.mcap_reading import McapContent, RawMessage, merg
 from msss_graphslam.recordings.mounting import Mounting
 from msss_graphslam.recordings.source import Record, Source
 from msss_graphslam.recordings.typestore import UndecodableError, decode
+
+_LOG_DELAY_NS = 2_000_000_000
 
 __all__ = ["RecordedTopic", "Recording", "open_recording"]
 
@@ -121,6 +123,16 @@ class Recording:
             return None
         stamps = np.array([pose.stamp_ns for pose in poses], dtype=np.int64)
         return Trajectory(stamps, np.array([pose.pose for pose in poses]))
+
+    def beams(self, start_ns: int, end_ns: int) -> Iterator[Beam]:
+        """Yield the beams logged between two times or shortly after, without counting refusals."""
+        source = Source(topics.SONAR_PING, decoding.beam)
+        recorded = self.find(topics.SONAR_PING)
+        for raw in self.messages([recorded.name] if recorded else []):
+            if start_ns <= raw.log_ns <= end_ns + _LOG_DELAY_NS:
+                beam = source.record_of(raw, Counter())
+                if beam is not None:
+                    yield beam
 
     def mounting(self) -> Mounting | None:
         """Return where the head sits, if the bag's static transforms say so."""

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The message types of ROS 2 Jazzy, for bags that are read and written without ROS."""
 
+import struct
 from functools import cache
-from struct import error as StructError  # noqa: N812
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,14 @@ __all__ = ["TYPES", "UndecodableError", "decode", "make"]
 
 TYPES = get_typestore(Stores.ROS2_JAZZY)
 
-_DECODING_ERRORS = (SerdeError, ValueError, LookupError, ArithmeticError, MemoryError, StructError)
+_DECODING_ERRORS = (
+    SerdeError,
+    ValueError,
+    LookupError,
+    ArithmeticError,
+    MemoryError,
+    struct.error,
+)
 
 
 class UndecodableError(Exception):

@@ -3,7 +3,7 @@
 """result.mcap: the output topics of a run, to be looked at in Foxglove or RViz.
 
 What stands for the whole run (graph, paths, maps) comes first and holds the final result. The
-moving topics follow in the order of time, at most ten a second.
+moving topics follow in the order of time, at most five a second.
 """
 
 import heapq
@@ -23,7 +23,7 @@ from msss_graphslam.results.record import RunRecord
 
 __all__ = ["write_result_bag"]
 
-_SHORTEST_PERIOD_NS = 100_000_000
+_SHORTEST_PERIOD_NS = 200_000_000
 
 _Message = tuple[int, str, Any]
 """Stamp [ns], topic, message."""

@@ -35,8 +35,12 @@ class IdealEchoes:
         self._settings = settings
         self._fan = Fan(walls, settings.beam_width)
         self._synthesis = ProfileSynthesis(settings, GAUSSIAN_PULSE)
-        self._walls = stream(seed, "ideal wall echoes")
-        self._false = stream(seed, "ideal false echoes")
+        self._losses = stream(seed, "ideal losses")
+        self._jitter = stream(seed, "ideal range jitter")
+        self._levels = stream(seed, "ideal levels")
+        self._outliers = stream(seed, "ideal outliers")
+        self._multipath = stream(seed, "ideal multipath")
+        self._cross_talk = stream(seed, "ideal cross-talk")
         self._noise = stream(seed, "ideal noise")
         self._arc_range = 0.0
         self._arc_beams_left = 0
@@ -54,31 +58,29 @@ class IdealEchoes:
         """Return ranges and powers (b, k) of the wall; infinitely far where its echo is lost."""
         hits = self._fan.cast(pings.origins, pings.azimuths)
         walls = Scatterers.between_rays(hits)
-        beams, generator = len(hits.ranges), self._walls
         axis = hits.incidence[:, hits.incidence.shape[1] // 2]
-        lost = 1.0 / (1.0 + np.exp((_HALF_LOST - axis) / _LOSS_WIDTH))
-        lost = generator.random(beams) < 1.0 - (1.0 - _MISSES) * (1.0 - lost)
-        jitter = _RANGE_JITTER * generator.standard_normal((beams, 1))
-        level = _WALL_LEVEL + _WALL_LEVEL_DEVIATION * generator.standard_normal((beams, 1))
-        ranges = np.where(lost[:, None], np.inf, walls.ranges + jitter)
+        kept = (1.0 - _MISSES) / (1.0 + np.exp((axis - _HALF_LOST) / _LOSS_WIDTH))
+        lost = self._losses.random((len(axis), 1)) >= kept[:, None]
+        jitter = _RANGE_JITTER * self._jitter.standard_normal((len(axis), 1))
+        level = self._levels.normal(_WALL_LEVEL, _WALL_LEVEL_DEVIATION, (len(axis), 1))
+        ranges = np.where(lost, np.inf, walls.ranges + jitter)
         return ranges, self._fan.shares * power_from_level(level)
 
     def _false_echoes(self, wall_ranges: Array) -> tuple[Array, Array]:
         """Return ranges and powers (b, 3) of outliers, multipath, cross-talk; inf is none."""
-        beams, generator = len(wall_ranges), self._false
-        outliers = generator.uniform(0.0, self._settings.maximum_range, beams)
-        outliers[generator.random(beams) >= _OUTLIERS] = np.inf
-        multipaths = wall_ranges + generator.uniform(*_MULTIPATH_DELAYS, beams)
-        multipaths[generator.random(beams) >= _MULTIPATHS] = np.inf
-        weaker = generator.normal(_MULTIPATH_LEVEL, _MULTIPATH_DEVIATION, beams)
+        beams = len(wall_ranges)
+        outliers = self._outliers.uniform(0.0, self._settings.maximum_range, beams)
+        outliers[self._outliers.random(beams) >= _OUTLIERS] = np.inf
+        delayed = wall_ranges + self._multipath.uniform(*_MULTIPATH_DELAYS, beams)
+        delayed[self._multipath.random(beams) >= _MULTIPATHS] = np.inf
         levels = np.full((beams, 3), _WALL_LEVEL)
-        levels[:, 1] += weaker
-        ranges = np.stack([outliers, multipaths, self._arcs(beams)], axis=1)
+        levels[:, 1] += self._multipath.normal(_MULTIPATH_LEVEL, _MULTIPATH_DEVIATION, beams)
+        ranges = np.stack([outliers, delayed, self._arcs(beams)], axis=1)
         return ranges, power_from_level(levels)
 
     def _arcs(self, beams: int) -> Array:
         """Return ranges (b,) of another sonar's pulses, alike for some beams; inf is none."""
-        generator, ranges = self._false, np.full(beams, np.inf)
+        generator, ranges = self._cross_talk, np.full(beams, np.inf)
         per_beam = _ARCS_PER_TURN * self._settings.step / (2.0 * np.pi)
         starts = generator.random(beams) < per_beam
         for beam in range(beams):

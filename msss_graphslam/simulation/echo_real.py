@@ -25,9 +25,7 @@ _INCIDENCE = np.radians([0.0, 30.0, 50.0, 65.0, 80.0, 90.0])
 _WALL_LEVEL = (49.0, 48.0, 46.8, 46.0, 42.5, 28.0)
 _SECOND_BOUNCE = power_from_level(-10.0)
 _RETURN_POWER = 6
-_FLOOR_START, _FLOOR_START_LEVEL = 2.0, -1.5
-_FLOOR_SLOPE = 1.1
-_FLOOR_SPREADING_RANGE = 10.0
+_FLOOR_RANGES, _FLOOR_LEVELS = (2.0, 10.0), (-1.5, 7.0)
 
 
 class RealEchoes:
@@ -86,8 +84,5 @@ def _wall_power(incidence: Array) -> Array:
 
 
 def _floor_level(ranges: Array) -> Array:
-    """Return the noise [dB]: it rises with the gain of the head, then as spreading asks."""
-    risen = _FLOOR_START_LEVEL + _FLOOR_SLOPE * np.maximum(ranges - _FLOOR_START, 0.0)
-    spread = 20.0 * np.log10(np.maximum(ranges / _FLOOR_SPREADING_RANGE, 1.0))
-    most = _FLOOR_START_LEVEL + _FLOOR_SLOPE * (_FLOOR_SPREADING_RANGE - _FLOOR_START)
-    return np.minimum(risen, most) + spread
+    """Return the noise [dB]: it rises with the head's gain, which levels off at 10 m."""
+    return np.interp(ranges, _FLOOR_RANGES, _FLOOR_LEVELS)

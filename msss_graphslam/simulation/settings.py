@@ -13,6 +13,7 @@ from msss_graphslam.errors import UserError
 __all__ = ["Rotation", "SonarSettings"]
 
 _SOUND_SPEED = 1500.0
+_TURN_DECIMALS = 10
 
 
 class Rotation(StrEnum):
@@ -82,4 +83,5 @@ class SonarSettings:
             angles = self.sector_centre + sign * (swept * self.step - 0.5 * self.sector)
         else:
             angles = sign * steps * self.step
-        return np.asarray(np.mod(angles + np.pi, 2.0 * np.pi) - np.pi)
+        turns = np.round(angles / (2.0 * np.pi), _TURN_DECIMALS)
+        return np.asarray(2.0 * np.pi * (turns - np.floor(turns + 0.5)))

@@ -21,7 +21,7 @@ from msss_graphslam.simulation.worlds import World
 __all__ = ["SonarRecord", "scan"]
 
 _STAMP_JITTER = 0.001
-_CHUNK = 256
+_CHUNK = 48
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +44,8 @@ def scan(
 ) -> SonarRecord:
     """Return what the turning head records on the way; ``progress`` gets the fraction done."""
     transmitted = np.arange(0.0, motion.duration, settings.beam_period)
-    head = stream(seed, "head")
-    turn = int(2.0 * np.pi / settings.step)
-    bearings = settings.bearings(len(transmitted), int(head.integers(turn)))
+    first_step = int(stream(seed, "first bearing").integers(int(2.0 * np.pi / settings.step)))
+    bearings = settings.bearings(len(transmitted), first_step)
     pings = _pings(motion.at(transmitted), bearings, settings.mount_yaw)
     model = _echo_model(world, settings, echo, seed)
     codes = np.empty((len(bearings), settings.bins), dtype=np.uint8)
@@ -56,7 +55,7 @@ def scan(
             Pings(pings.origins[part], pings.bearings[part], pings.azimuths[part])
         )
         progress(min(start + _CHUNK, len(bearings)) / len(bearings))
-    jitter = _STAMP_JITTER * np.abs(head.standard_normal(len(transmitted)))
+    jitter = _STAMP_JITTER * np.abs(stream(seed, "stamps").standard_normal(len(transmitted)))
     late = np.minimum(jitter, 0.5 * settings.beam_period)
     return SonarRecord(settings, transmitted + late, bearings, codes)
 

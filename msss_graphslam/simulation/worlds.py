@@ -102,7 +102,7 @@ def _marina() -> World:
         [harbour, _rock(breakwater, "breakwater", 0.25)],
         _lap(waypoints, 300.0),
         rough=False,
-        sonar=SonarSettings(50.0, 500, np.radians(1.8), 0.1),
+        sonar=SonarSettings(50.0, 500, np.radians(1.8), 0.078),
     )
 
 

@@ -92,10 +92,9 @@ def test_what_is_no_bag_is_named(tmp_path: Path, name: str, content: bytes) -> N
     ids=lambda arguments: arguments[0],
 )
 def test_a_missing_bag_is_named_and_nothing_is_left(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...]
+    tmp_path: Path, arguments: tuple[str, ...]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    done = msss(*arguments)
+    done = msss(*arguments, cwd=tmp_path)
     assert_one_line(done)
     assert "nothing: no such file" in done.stderr
     assert list(tmp_path.iterdir()) == []

@@ -107,6 +107,18 @@ def test_keyframes_are_judged_without_the_fixed_one(assessment):
     assert timid.mean == pytest.approx(assessment.keyframe_consistency.mean / 100.0)
 
 
+def test_a_wrong_launch_heading_is_no_error_of_the_keyframes(assessment):
+    truth = assessment.record.truth
+    angle = 0.3
+    poses = truth.poses.copy()
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    poses[:, :2] = poses[:, :2] @ turn
+    poses[:, 5] += angle
+    turned = assess(replace(assessment.record, truth=replace(truth, poses=poses)))
+    assert turned.errors["full"].anchored.max() > 1.0
+    np.testing.assert_allclose(turned.keyframe_errors, assessment.keyframe_errors, atol=1e-9)
+
+
 def test_covariances_of_zero_are_not_judged(assessment):
     frames = assessment.record.estimate.keyframes
     sure = tuple(replace(frame, covariance=np.zeros((3, 3))) for frame in frames)

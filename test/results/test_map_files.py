@@ -6,37 +6,35 @@ import yaml
 from PIL import Image
 
 from msss_graphslam.core.mapping import OccupancyGrid
-from msss_graphslam.errors import UserError
 from msss_graphslam.results.occupancy_map import write_occupancy_map
-from msss_graphslam.results.point_cloud import read_points, write_points
+from msss_graphslam.results.point_cloud import write_points
+
+
+def read_ply(path):
+    """Read the vertices as the header describes them."""
+    header, _, body = path.read_bytes().partition(b"end_header\n")
+    lines = header.decode().splitlines()
+    assert lines[:2] == ["ply", "format binary_little_endian 1.0"]
+    count = next(int(line.split()[2]) for line in lines if line.startswith("element vertex"))
+    properties = [line.split() for line in lines if line.startswith("property")]
+    assert [kind for _, kind, _ in properties] == ["float"] * 3
+    assert [name for *_, name in properties] == ["x", "y", "z"]
+    assert len(body) == count * 12
+    return np.frombuffer(body, dtype="<f4").reshape(count, 3)
 
 
 @pytest.mark.parametrize("columns", [2, 3])
 def test_points_come_back_in_single_precision(tmp_path, columns):
     points = np.random.default_rng(3).uniform(-500.0, 500.0, (200, columns))
     write_points(tmp_path / "map.ply", points)
-    read = read_points(tmp_path / "map.ply")
+    read = read_ply(tmp_path / "map.ply")
     np.testing.assert_allclose(read[:, :columns], points, atol=5e-5)
     assert np.all(read[:, columns:] == 0.0)
 
 
 def test_a_map_without_points_is_a_valid_file(tmp_path):
     write_points(tmp_path / "map.ply", np.zeros((0, 2)))
-    assert read_points(tmp_path / "map.ply").shape == (0, 3)
-
-
-@pytest.mark.parametrize("damage", ["truncate", "other", "missing"])
-def test_a_damaged_point_map_is_refused(tmp_path, damage):
-    path = tmp_path / "map.ply"
-    write_points(path, np.ones((5, 3)))
-    if damage == "truncate":
-        path.write_bytes(path.read_bytes()[:-12])
-    elif damage == "other":
-        path.write_bytes(b"ply\nformat ascii 1.0\nend_header\n")
-    else:
-        path.unlink()
-    with pytest.raises(UserError, match=r"map\.ply"):
-        read_points(path)
+    assert read_ply(tmp_path / "map.ply").shape == (0, 3)
 
 
 def as_map_server_reads(directory):

@@ -121,7 +121,7 @@ def test_messages_are_in_the_order_of_time(messages):
         assert stamps == sorted(stamps)
 
 
-def test_fast_beams_are_thinned_to_ten_a_second(record, tmp_path):
+def test_fast_beams_are_thinned_to_five_a_second(record, tmp_path):
     def hurried(trajectory):
         start = trajectory.stamps_ns[0]
         return replace(trajectory, stamps_ns=start + (trajectory.stamps_ns - start) // 5)
@@ -138,8 +138,8 @@ def test_fast_beams_are_thinned_to_ten_a_second(record, tmp_path):
     )
     odometry = read(fast, tmp_path / "result.mcap")["/odom"]
     periods = np.diff([stamp for stamp, _ in odometry])
-    assert periods[:-1].min() >= 100_000_000
-    assert len(odometry) < len(estimate.trajectory.stamps_ns) / 2
+    assert periods[:-1].min() >= 200_000_000
+    assert len(odometry) < len(estimate.trajectory.stamps_ns) / 4
 
 
 def test_less_than_a_turn_still_makes_a_bag(record, tmp_path):

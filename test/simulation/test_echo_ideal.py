@@ -55,11 +55,10 @@ def test_outliers_multipath_and_arcs_come_at_their_rates() -> None:
 def test_cross_talk_stays_at_one_range_for_some_beams() -> None:
     model = IdealEchoes(Walls.of([FAR_AWAY]), OPEN_WATER, seed=3)
     ranges = model._arcs(50_000)
-    begins = np.flatnonzero(np.diff(np.concatenate([[np.inf], ranges])) != 0.0)
-    begins = begins[np.isfinite(ranges[begins])]
+    begins = 1 + np.flatnonzero(np.isfinite(ranges[1:]) & (ranges[1:] != ranges[:-1]))
     assert len(begins) == pytest.approx(0.4 * 50_000 / 200, rel=0.3)
     lengths = [np.flatnonzero(ranges[k:] != ranges[k])[0] for k in begins[:-1]]
-    assert min(lengths) >= 4 or np.mean(np.array(lengths) >= 4) > 0.9
+    assert np.mean(np.array(lengths) >= 4) > 0.9
     assert max(lengths) <= 14
 
 

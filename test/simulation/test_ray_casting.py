@@ -10,7 +10,7 @@ from msss_graphslam.simulation.ray_casting import Walls
 from msss_graphslam.simulation.scene import Fan, Scatterers
 
 INSIDE = st.floats(-5.9, 5.9)
-ANGLE = st.floats(-10.0, 10.0)
+ANGLE = st.integers(-1000, 1000).map(lambda k: 0.01 * k)
 
 
 @given(x=INSIDE, y=INSIDE, azimuth=ANGLE)

@@ -17,8 +17,6 @@ from msss_graphslam.simulation.mission import Mission, fly
 from msss_graphslam.simulation.recording import SimulatedBag, simulate
 from msss_graphslam.simulation.worlds import World, world_named
 
-SHORT_LAP = 0.2
-
 
 def small_world() -> World:
     """The paper's world with a path of 1.5 m and coarse settings."""

@@ -9,7 +9,6 @@ from msss_graphslam.cli.exit_codes import ExitCode
 from msss_graphslam.cli.options import (
     add_bag,
     add_configuration,
-    add_json,
     add_output,
     configuration_of,
 )
@@ -26,7 +25,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_bag(parser)
     add_output(parser, "a folder of files for each estimator, and the figures of all")
     add_configuration(parser)
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from msss_graphslam.cli.console import Console
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.options import add_json
 from msss_graphslam.recordings.conversion import FORMATS, convert
 from msss_graphslam.recordings.mounting import Mounting
 
@@ -24,7 +23,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--mounting", type=Path, metavar="FILE", help="YAML file of the sensors' offsets"
     )
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

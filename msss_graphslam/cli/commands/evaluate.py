@@ -7,7 +7,6 @@ from pathlib import Path
 
 from msss_graphslam.cli.console import Console
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.options import add_json
 
 __all__ = ["SUMMARY", "add_arguments", "execute"]
 
@@ -24,7 +23,6 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar="FILE.tum",
         help="the true poses: t x y z qx qy qz qw, the times those of the bag",
     )
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

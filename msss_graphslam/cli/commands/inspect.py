@@ -8,7 +8,7 @@ from math import degrees
 
 from msss_graphslam.cli.console import Console, Row
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.options import add_bag, add_configuration, add_json, configuration_of
+from msss_graphslam.cli.options import add_bag, add_configuration, configuration_of
 from msss_graphslam.recordings.inspection import InspectionReport, TopicReport, inspect
 from msss_graphslam.recordings.sonar_settings import SonarSettings
 
@@ -21,7 +21,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's arguments."""
     add_bag(parser)
     add_configuration(parser)
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

@@ -10,7 +10,6 @@ from msss_graphslam.cli.options import (
     add_bag,
     add_configuration,
     add_estimator,
-    add_json,
     add_output,
     configuration_of,
 )
@@ -28,7 +27,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_output(parser, "the files of the run")
     add_estimator(parser)
     add_configuration(parser)
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from msss_graphslam.cli.console import Console
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.options import add_bag, add_json
+from msss_graphslam.cli.options import add_bag
 
 __all__ = ["SUMMARY", "add_arguments", "execute"]
 
@@ -18,7 +18,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's arguments."""
     add_bag(parser)
     parser.add_argument("out", type=Path, metavar="OUT", help="the new bag")
-    add_json(parser)
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:

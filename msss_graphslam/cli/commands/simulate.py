@@ -52,8 +52,8 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
             echo=arguments.echo,
             progress=lambda fraction: progress(fraction, f"simulating {arguments.world}"),
         )
-    console.line(f"bag: {written.bag}")
-    console.line(f"ground truth: {written.ground_truth}")
+    data = {"bag": str(written.bag), "ground_truth": str(written.ground_truth)}
+    console.result(data, lambda: console.table(("", "path"), list(data.items())))
     return ExitCode.CLEAN
 
 

@@ -30,7 +30,7 @@ def errors_over_time(assessments: Sequence[Assessment]) -> Plate | None:
             _draw(position, heading, run.online_errors, start, colour(run.estimator), name, ":")
     position.set_ylabel("position error [m]")
     heading.set_ylabel("heading error [deg]")
-    position.legend(loc="upper left", ncols=2)
+    position.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
     caption = (
         "Distance from the true position with the trajectory anchored at its start, and estimated"
         " minus true heading."
@@ -57,7 +57,7 @@ def corrections(assessments: Sequence[Assessment]) -> Plate:
             heading.plot(time, np.degrees(np.unwrap(difference[:, 2])), style, color=shade)
     position.set_ylabel("position change [m]")
     heading.set_ylabel("heading change [deg]")
-    position.legend(loc="upper left", ncols=2)
+    position.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
     caption = (
         "Distance between the corrected and the dead-reckoned position, and the difference of"
         " their headings. This is no error: the recording has no ground truth."

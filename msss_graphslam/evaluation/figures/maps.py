@@ -9,20 +9,21 @@ from matplotlib.colors import ListedColormap
 
 from msss_graphslam.core.types import Array
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment, dead_reckoned_points
-from msss_graphslam.evaluation.figures.style import Plate, colour, label, map_figure
+from msss_graphslam.evaluation.figures.style import Plate, colour, label, map_extent, map_figure
 from msss_graphslam.evaluation.figures.trajectories import draw_ends, draw_points, draw_track
 
 __all__ = ["maps", "occupancy"]
+
+_UNSEEN = (0.80, 0.87, 0.94)
 
 
 def maps(assessments: Sequence[Assessment]) -> Plate:
     """Draw the same echoes as each estimator places them, with its trajectory."""
     clouds = _clouds(assessments)
     tracks = {name: path for run in assessments for name, path in run.trajectories.items()}
-    figure, panels = map_figure(
-        np.vstack(list(clouds.values()) + [path.planar[:, :2] for path in tracks.values()]),
-        panels=len(clouds),
-    )
+    positions = np.vstack([path.planar[:, :2] for path in tracks.values()])
+    extent = map_extent(np.vstack(list(clouds.values())), positions)
+    figure, panels = map_figure(extent, panels=len(clouds))
     for axes, (name, points) in zip(panels, clouds.items(), strict=True):
         draw_points(axes, points)
         draw_track(axes, tracks[name].planar, colour(name), label(name))
@@ -38,8 +39,11 @@ def occupancy(assessment: Assessment) -> Plate | None:
         return None
     (west, south), (rows, columns) = grid.origin, grid.occupancy.shape
     east, north = west + columns * grid.resolution, south + rows * grid.resolution
-    figure, (axes,) = map_figure(np.array([[west, south], [east, north]]))
+    track = assessment.record.estimate.trajectory.planar
+    extent = map_extent(assessment.record.points, track[:, :2])
+    figure, (axes,) = map_figure(extent)
     axes.grid(visible=False)
+    axes.set_facecolor(_UNSEEN)
     axes.imshow(
         np.where(grid.occupancy < 0, -1, grid.occupancy.astype(int)),
         cmap=_occupancy_colours(),
@@ -50,10 +54,11 @@ def occupancy(assessment: Assessment) -> Plate | None:
         interpolation="nearest",
     )
     shade = colour(assessment.estimator)
-    draw_track(axes, assessment.record.estimate.trajectory.planar, shade, "trajectory")
+    axes.set(xlim=extent[:, 0], ylim=extent[:, 1])
+    draw_track(axes, track, shade, "trajectory")
     caption = (
-        f"Cells of {grid.resolution:g} m: white is water that a beam passed through, dark is where"
-        " echoes came from, grey was never seen."
+        f"Cells of {grid.resolution:g} m: white is water that beams passed through, the darker the"
+        " more probably a wall, pale blue was never seen."
     )
     return Plate("occupancy", "Occupancy grid", caption, figure)
 
@@ -64,10 +69,10 @@ def _clouds(assessments: Sequence[Assessment]) -> dict[str, Array]:
 
 
 def _occupancy_colours() -> ListedColormap:
-    """Return grey for -1, then white to dark for 0 to 100 per cent."""
+    """Return pale blue for -1, then white to dark for 0 to 100 per cent."""
     dark = np.array([0.10, 0.16, 0.24])
     shares = np.linspace(0.0, 1.0, 101)[:, None]
-    return ListedColormap(np.vstack([[[0.85, 0.87, 0.89]], 1.0 - shares * (1.0 - dark)]))
+    return ListedColormap(np.vstack([[_UNSEEN], 1.0 - shares * (1.0 - dark)]))
 
 
 def _caption(assessments: Sequence[Assessment]) -> str:

@@ -17,6 +17,7 @@ from msss_graphslam.evaluation.figures.style import (
     REFUSALS,
     TRUTH,
     Plate,
+    map_extent,
     map_figure,
     phrase,
 )
@@ -31,14 +32,13 @@ def network(assessment: Assessment) -> Plate | None:
     if len(estimate.keyframes) < 2:
         return None
     nodes = np.array([frame.pose[:2] for frame in estimate.keyframes])
-    figure, (accepted, refused) = map_figure(nodes, panels=2)
+    figure, (accepted, refused) = map_figure(map_extent(nodes, nodes), panels=2)
     if assessment.anchored_truth is not None:
         draw_track(accepted, assessment.anchored_truth, TRUTH, "ground truth", ":")
     _draw_accepted(accepted, nodes, estimate.constraints)
     _draw_refused(refused, nodes, estimate.constraints)
     for axes, title in ((accepted, "in the graph"), (refused, "refused")):
         axes.plot(*nodes.T, "o", color=MUTED, markersize=3.5, mew=0, zorder=4)
-        axes.autoscale_view()
         _legend(axes, title)
     return Plate("network", "The constraint network", _caption(assessment), figure)
 
@@ -93,8 +93,15 @@ def _draw(
 
 
 def _legend(axes: Axes, title: str) -> None:
+    handles, names = axes.get_legend_handles_labels()
     legend = axes.legend(
-        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, title=title, alignment="left"
+        handles,
+        names,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=2,
+        title=title if names else f"{title}: none",
+        alignment="left",
     )
     legend.get_title().set_fontweight("bold")
     for handle in legend.get_lines():

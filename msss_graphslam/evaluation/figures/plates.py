@@ -9,10 +9,11 @@ import matplotlib as mpl
 
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.figures.closures import closures
+from msss_graphslam.evaluation.figures.echo_image import echo_image
 from msss_graphslam.evaluation.figures.errors import corrections, errors_over_time
 from msss_graphslam.evaluation.figures.maps import maps, occupancy
 from msss_graphslam.evaluation.figures.network import network
-from msss_graphslam.evaluation.figures.scan import echo_image, one_scan
+from msss_graphslam.evaluation.figures.scan import one_scan
 from msss_graphslam.evaluation.figures.style import RC, Plate
 from msss_graphslam.evaluation.figures.timing import timing
 from msss_graphslam.evaluation.figures.trajectories import trajectories

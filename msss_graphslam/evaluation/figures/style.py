@@ -21,6 +21,7 @@ __all__ = [
     "Plate",
     "colour",
     "label",
+    "map_extent",
     "map_figure",
     "minutes",
     "phrase",
@@ -60,6 +61,7 @@ _WIDTH = 9.0
 _MOST_COLUMNS = 3
 _HIGHEST = 7.5
 _FLAT = 0.6
+_STRAYS = 0.003
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,17 +94,32 @@ def minutes(stamps_ns: Array | np.ndarray, start_ns: int) -> Array:
     return np.asarray((np.asarray(stamps_ns) - start_ns) / 60e9)
 
 
-def map_figure(positions: Array, panels: int = 1) -> tuple[Figure, list[Axes]]:
-    """Return a figure for some maps of equal extent, as high as positions (n, 2) ask."""
-    span = np.ptp(positions, axis=0) if len(positions) else np.ones(2)
-    aspect = float(np.clip((span[1] + 1.0) / (span[0] + 1.0), 0.15, 1.5))
+def map_extent(points: Array, positions: Array) -> Array:
+    """Return the corners (2, 2) [m] of a map: all positions, and the points but for a few strays.
+
+    Ghosts far behind the walls would otherwise make every map small.
+    """
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    if len(points):
+        inner = np.quantile(points[:, :2], [_STRAYS, 1.0 - _STRAYS], axis=0)
+        low, high = np.minimum(low, inner[0]), np.maximum(high, inner[1])
+    margin = 0.03 * float((high - low).max()) + 0.5
+    return np.array([low - margin, high + margin])
+
+
+def map_figure(corners: Array, panels: int = 1) -> tuple[Figure, list[Axes]]:
+    """Return a figure for some maps that show the extent with these corners (2, 2) [m]."""
+    width, height = corners[1] - corners[0]
+    aspect = float(np.clip(height / width, 0.15, 1.5))
     columns = _columns(panels, aspect)
     rows = -(-panels // columns)
-    height = min((_WIDTH / columns - 0.4) * aspect, _HIGHEST) + 0.6
-    figure = Figure(figsize=(_WIDTH, rows * height + 0.4), layout="compressed")
+    row = min((_WIDTH / columns - 0.4) * aspect, _HIGHEST) + 0.6
+    figure = Figure(figsize=(_WIDTH, rows * row + 0.4), layout="compressed")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes in grid.flat:
         axes.set_aspect("equal")
+        axes.set_xlim(*corners[:, 0])
+        axes.set_ylim(*corners[:, 1])
     for axes in grid[-1]:
         axes.set_xlabel("x, east [m]")
     for axes in grid[:, 0]:

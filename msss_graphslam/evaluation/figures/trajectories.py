@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trajectories over the map: the paper's Figures 10 and 16."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from msss_graphslam.core.types import Array
+from msss_graphslam.core.types import Array, Trajectory
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment
 from msss_graphslam.evaluation.errors import start_end_gap
 from msss_graphslam.evaluation.figures.style import (
@@ -16,6 +16,7 @@ from msss_graphslam.evaluation.figures.style import (
     Plate,
     colour,
     label,
+    map_extent,
     map_figure,
 )
 
@@ -27,7 +28,7 @@ def trajectories(assessments: Sequence[Assessment]) -> Plate:
     best = assessments[-1]
     tracks = {name: path for run in assessments for name, path in run.trajectories.items()}
     positions = np.vstack([path.planar[:, :2] for path in tracks.values()])
-    figure, (axes,) = map_figure(np.vstack([positions, best.record.points[:, :2]]))
+    figure, (axes,) = map_figure(map_extent(best.record.points, positions))
     draw_points(axes, best.record.points)
     for name, path in tracks.items():
         dashed = name == DEAD_RECKONING
@@ -36,7 +37,7 @@ def trajectories(assessments: Sequence[Assessment]) -> Plate:
         draw_track(axes, best.anchored_truth, TRUTH, "ground truth", ":")
     draw_ends(axes, best.record.estimate.trajectory.planar, colour(best.estimator))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=7)
-    return Plate("trajectories", "Trajectories over the map", _caption(best), figure)
+    return Plate("trajectories", "Trajectories over the map", _caption(best, tracks), figure)
 
 
 def draw_points(axes: Axes, points: Array) -> None:
@@ -71,10 +72,9 @@ def draw_ends(axes: Axes, planar: Array, shade: str) -> None:
         )
 
 
-def _caption(assessment: Assessment) -> str:
+def _caption(assessment: Assessment, tracks: Mapping[str, Trajectory]) -> str:
     gaps = ", ".join(
-        f"{start_end_gap(path):.2f} m ({label(name)})"
-        for name, path in assessment.trajectories.items()
+        f"{start_end_gap(path):.2f} m ({label(name)})" for name, path in tracks.items()
     )
     shift = (
         " The ground truth is shifted to the common start and not rotated."

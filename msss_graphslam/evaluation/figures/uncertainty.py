@@ -28,7 +28,9 @@ def uncertainty(assessment: Assessment) -> Plate | None:
     _draw_band(
         heading, time, np.degrees(np.sqrt(covariances[:, 2, 2])), colour(assessment.estimator)
     )
-    _draw_actual(assessment, position, heading)
+    _draw_actual(assessment, time, position, heading)
+    for axes in (position, heading):
+        axes.set_ylim(bottom=0.0)
     position.set_ylabel("position [m]")
     heading.set_ylabel("heading [deg]")
     heading.set_xlabel("time since the start of the recording [min]")
@@ -42,21 +44,20 @@ def _draw_band(axes: Axes, time: Array, deviation: Array, shade: str) -> None:
         time, 0.0, 2.0 * deviation, color=shade, alpha=0.15, lw=0, label="two standard deviations"
     )
     axes.plot(time, deviation, color=shade, label="one standard deviation")
-    axes.set_ylim(bottom=0.0)
 
 
-def _draw_actual(assessment: Assessment, position: Axes, heading: Axes) -> None:
-    if assessment.errors:
-        errors = assessment.errors[assessment.estimator]
-        time = minutes(errors.stamps_ns, assessment.record.bag.start_ns)
-        position.plot(time, errors.anchored, color=TRUTH, lw=0.9, label="actual error")
-        heading.plot(time, np.abs(np.degrees(errors.heading)), color=TRUTH, lw=0.9)
-    else:
+def _draw_actual(assessment: Assessment, time: Array, position: Axes, heading: Axes) -> None:
+    errors = assessment.keyframe_errors
+    if errors is None:
         position.plot([], [], color=MUTED, lw=0, label="(no ground truth to compare with)")
+        return
+    distance = np.linalg.norm(errors[:, :2], axis=1)
+    position.plot(time, distance, ".", color=TRUTH, markersize=4, label="actual error")
+    heading.plot(time, np.abs(np.degrees(errors[:, 2])), ".", color=TRUTH, markersize=4)
 
 
 def _caption(assessment: Assessment) -> str:
-    text = "One and two standard deviations of the scans' poses, relative to the first."
+    text = "One and two standard deviations of the scans' poses relative to the first scan's."
     nees = assessment.keyframe_consistency
     if nees is None:
         return text

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS 1 bags, read with the message definitions that they carry."""
 
+import struct
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from struct import error as struct_error
 from typing import Any
 
 from rosbags.interfaces import Connection
@@ -22,7 +22,7 @@ from msss_graphslam.recordings.conversion.foreign import ForeignMessage
 __all__ = ["convert_type", "has_type", "stamp_of"]
 
 _MAGIC = b"#ROSBAG V2.0"
-_DAMAGE = (ReaderError, OSError, ValueError, KeyError, IndexError, AssertionError, struct_error)
+_DAMAGE = (ReaderError, OSError, ValueError, KeyError, IndexError, AssertionError, struct.error)
 _BAD_DEFINITION = (TypesysError, ValueError, KeyError)
 
 

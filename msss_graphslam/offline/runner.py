@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""``msss run`` and ``msss compare``: from a bag to a directory of results."""
+
+from pathlib import Path
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.evaluation.assessment import Assessment, assess
+from msss_graphslam.evaluation.report import write_comparison_report, write_report
+from msss_graphslam.evaluation.summary import summarise
+from msss_graphslam.offline.estimation import Progress, estimate, recipe_named
+from msss_graphslam.recordings.reader import Recording, open_recording
+from msss_graphslam.results.directory import ResultDirectory
+from msss_graphslam.results.record import RunRecord
+
+__all__ = ["compare", "run"]
+
+
+def run(
+    bag: Path, output: Path, estimator: str, configuration: Configuration, progress: Progress
+) -> RunRecord:
+    """Run one estimator over a bag and write every result into ``output``."""
+    recipe = recipe_named(estimator)
+    recording = open_recording(bag)
+    record = estimate(recording, recipe, configuration, progress)
+    progress(0.95, "report")
+    assessment = _write(record, ResultDirectory.create(output))
+    write_report(ResultDirectory(output), assessment)
+    progress(1.0, "done")
+    return record
+
+
+def compare(
+    bag: Path, output: Path, configuration: Configuration, progress: Progress
+) -> list[RunRecord]:
+    """Run every estimator; one directory each under ``output`` and one report of all."""
+    recording = open_recording(bag)
+    assessments = [
+        _compared(recording, name, number, output, configuration, progress)
+        for number, name in enumerate(ESTIMATORS)
+    ]
+    progress(0.95, "report")
+    write_comparison_report(ResultDirectory(output), assessments)
+    progress(1.0, "done")
+    return [assessment.record for assessment in assessments]
+
+
+def _compared(
+    recording: Recording,
+    name: str,
+    number: int,
+    output: Path,
+    configuration: Configuration,
+    progress: Progress,
+) -> Assessment:
+    def share(fraction: float, _: str) -> None:
+        progress(0.95 * (number + fraction) / len(ESTIMATORS), name)
+
+    record = estimate(recording, ESTIMATORS[name], configuration, share)
+    return _write(record, ResultDirectory.create(output / name))
+
+
+def _write(record: RunRecord, directory: ResultDirectory) -> Assessment:
+    assessment = assess(record)
+    directory.write_estimate(record)
+    directory.write_summary(summarise(assessment))
+    return assessment
