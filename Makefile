@@ -44,6 +44,12 @@ lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+bench: $(STAMP) ## milliseconds a scan by stage, for every estimator
+	$(BIN)/python -m msss_graphslam.cli.studies.benchmark
+
+reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
+	$(BIN)/python -m msss_graphslam.cli.studies.reproduction
+
 sample-bag: $(STAMP) ## make the sample bag anew
 	$(BIN)/python bags/make_sample.py
 
@@ -51,4 +57,4 @@ defaults: $(STAMP) ## write config/ and the README's table from the configuratio
 	$(BIN)/python -m msss_graphslam.config.documentation
 
 clean: ## remove what the targets made
-	rm -rf $(VENV) demo bench reproduction build install log
+	rm -rf $(VENV) demo build install log

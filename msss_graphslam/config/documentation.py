@@ -12,7 +12,14 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.fields import ParameterInfo
 from msss_graphslam.config.files import ros_parameters
 
-__all__ = ["PARAMETER_FILE", "README", "parameter_file", "parameter_table", "with_table"]
+__all__ = [
+    "PARAMETER_FILE",
+    "README",
+    "parameter_file",
+    "parameter_table",
+    "with_section",
+    "with_table",
+]
 
 PARAMETER_FILE = Path("config", "msss_graphslam.yaml")
 README = Path("README.md")
@@ -37,11 +44,16 @@ def parameter_table() -> str:
 
 def with_table(readme: str) -> str:
     """Return the README with the tables between its two marks made anew."""
-    before, begin, rest = readme.partition(_BEGIN)
-    _, end, after = rest.partition(_END)
-    if not (begin and end):
-        raise ValueError(f"the README must hold {_BEGIN!r} and {_END!r}")
-    return f"{before}{_BEGIN}\n\n{parameter_table()}\n{_END}{after}"
+    return with_section(readme, _BEGIN, _END, parameter_table())
+
+
+def with_section(document: str, begin: str, end: str, content: str) -> str:
+    """Return a document with what stands between two marks replaced by ``content``."""
+    before, found_begin, rest = document.partition(begin)
+    _, found_end, after = rest.partition(end)
+    if not (found_begin and found_end):
+        raise ValueError(f"the document must hold {begin!r} and {end!r}")
+    return f"{before}{begin}\n\n{content}\n{end}{after}"
 
 
 def _group_table(name: str, parameters: list[ParameterInfo]) -> str:

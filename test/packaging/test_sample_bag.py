@@ -5,14 +5,21 @@
 import hashlib
 from pathlib import Path
 
+import pytest
+
 BAGS = Path(__file__).parents[2] / "bags"
-FILE = next((BAGS / "pond").glob("*.mcap"))
 
 
-def test_the_checksum_is_the_one_noted() -> None:
-    checksum = hashlib.sha256(FILE.read_bytes()).hexdigest()
+@pytest.fixture
+def file() -> Path:
+    (path,) = (BAGS / "pond").glob("*.mcap")
+    return path
+
+
+def test_the_checksum_is_the_one_noted(file: Path) -> None:
+    checksum = hashlib.sha256(file.read_bytes()).hexdigest()
     assert f"`{checksum}`" in (BAGS / "README.md").read_text(encoding="utf-8")
 
 
-def test_it_is_small_enough_for_git() -> None:
-    assert FILE.stat().st_size <= 10_000_000
+def test_it_is_small_enough_for_git(file: Path) -> None:
+    assert file.stat().st_size <= 10_000_000

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""A short simulated mission in the pond, as the measurements that the pipeline takes."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from msss_graphslam.core.types import (
+    Array,
+    Beam,
+    BodyVelocity,
+    Depth,
+    Inertial,
+    Measurement,
+    Stamps,
+    Trajectory,
+)
+from msss_graphslam.simulation.echo_model import EchoKind
+from msss_graphslam.simulation.inertial import NoiseLevel
+from msss_graphslam.simulation.mission import Mission, fly
+from msss_graphslam.simulation.path import Path
+from msss_graphslam.simulation.worlds import World, world_named
+
+LAUNCH_NS = 1_750_000_000_000_000_000
+AIR, WEIGHT = 101_325.0, 9806.65
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Measurements in the order of their stamps, and the truth at every beam."""
+
+    measurements: tuple[Measurement, ...]
+    truth: Trajectory
+
+    @property
+    def beams(self) -> list[Beam]:
+        return [entry for entry in self.measurements if isinstance(entry, Beam)]
+
+
+@cache
+def recorded(
+    seed: int = 1, *, echo: EchoKind = EchoKind.IDEAL, lap: float = 0.25, dvl: bool = False
+) -> Recorded:
+    """Fly once round a course like the pond's, ``lap`` times as long, in the pond."""
+    world = _small_pond(lap)
+    mission = fly(
+        world,
+        seed,
+        noise=NoiseLevel.PAPER,
+        echo=echo,
+        sonar=world.sonar,
+        dvl=dvl,
+        progress=lambda _: None,
+    )
+    stamps = _stamps(mission.sonar.times)
+    measurements = sorted(_measurements(mission), key=lambda entry: entry.stamp_ns)
+    return Recorded(tuple(measurements), Trajectory(stamps, mission.motion.at(mission.sonar.times)))
+
+
+def _small_pond(lap: float) -> World:
+    pond = world_named("pond")
+    waypoints = lap * pond.path.points[::100]
+    return replace(pond, path=Path.through(waypoints - waypoints[0]), laps=1)
+
+
+def _measurements(mission: Mission) -> list[Measurement]:
+    inertial, pressure, sonar = mission.inertial, mission.pressure, mission.sonar
+    measurements: list[Measurement] = [
+        Inertial(int(stamp), angles, rates)
+        for stamp, angles, rates in zip(
+            _stamps(inertial.times),
+            inertial.orientations,
+            inertial.angular_velocities,
+            strict=True,
+        )
+    ]
+    for stamp, pascal in zip(_stamps(pressure.times), pressure.pressures, strict=True):
+        measurements.append(Depth(int(stamp), (AIR - float(pascal)) / WEIGHT))
+    if mission.velocity is not None:
+        velocity = mission.velocity
+        for stamp, value in zip(_stamps(velocity.times), velocity.velocities, strict=True):
+            measurements.append(BodyVelocity(int(stamp), value, 1e-4 * np.eye(3)))
+    ranges = sonar.settings.ranges
+    for stamp, bearing, codes in zip(
+        _stamps(sonar.times), sonar.bearings, sonar.codes, strict=True
+    ):
+        measurements.append(Beam(int(stamp), float(bearing), ranges, codes))
+    return measurements
+
+
+def _stamps(times: Array) -> Stamps:
+    return np.asarray(np.rint(times * 1e9), dtype=np.int64) + LAUNCH_NS
