@@ -45,10 +45,10 @@ lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/lint-imports
 
 bench: $(STAMP) ## milliseconds a scan by stage, for every estimator
-	$(BIN)/python -m msss_graphslam.cli.studies.benchmark
+	$(BIN)/python -m benchmarks.bench
 
 reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
-	$(BIN)/python -m msss_graphslam.cli.studies.reproduction
+	$(BIN)/python -m benchmarks.reproduce
 
 sample-bag: $(STAMP) ## make the sample bag anew
 	$(BIN)/python bags/make_sample.py

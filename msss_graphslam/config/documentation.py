@@ -17,7 +17,6 @@ __all__ = [
     "README",
     "parameter_file",
     "parameter_table",
-    "with_section",
     "with_table",
 ]
 
@@ -44,16 +43,11 @@ def parameter_table() -> str:
 
 def with_table(readme: str) -> str:
     """Return the README with the tables between its two marks made anew."""
-    return with_section(readme, _BEGIN, _END, parameter_table())
-
-
-def with_section(document: str, begin: str, end: str, content: str) -> str:
-    """Return a document with what stands between two marks replaced by ``content``."""
-    before, found_begin, rest = document.partition(begin)
-    _, found_end, after = rest.partition(end)
-    if not (found_begin and found_end):
-        raise ValueError(f"the document must hold {begin!r} and {end!r}")
-    return f"{before}{begin}\n\n{content}\n{end}{after}"
+    before, begin, rest = readme.partition(_BEGIN)
+    _, end, after = rest.partition(_END)
+    if not (begin and end):
+        raise ValueError(f"the README must hold {_BEGIN!r} and {_END!r}")
+    return f"{before}{_BEGIN}\n\n{parameter_table()}\n{_END}{after}"
 
 
 def _group_table(name: str, parameters: list[ParameterInfo]) -> str:

@@ -89,21 +89,23 @@ class DeadReckoning:
 
     def _predict(self, ekf: KalmanFilter, measurement: Measurement) -> None:
         interval = (measurement.stamp_ns - self._stamp_ns) * 1e-9
-        rates = self._rates
-        self._stamp_ns = measurement.stamp_ns
+        rates = self._rates if self._has_inertial(measurement) else None
+        self._stamp_ns, self._rates = measurement.stamp_ns, rates
         if isinstance(measurement, Inertial):
             self._rates = measurement.angular_velocity
             if rates is not None and self._rates is not None:
                 rates = 0.5 * (rates + self._rates)
-        if rates is None or not self._has_inertial(measurement):
+        if rates is None:
             ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise)
         else:
             ekf.predict(interval, rates, self._config.gyro_noise)
 
     def _has_inertial(self, now: Measurement) -> bool:
-        if self._inertial_ns is None:
-            return False
-        return now.stamp_ns - self._inertial_ns <= self._config.sensor_timeout * 1e9
+        return self._recent(self._inertial_ns, now.stamp_ns)
+
+    def _recent(self, last_ns: int | None, now_ns: int) -> bool:
+        timeout_ns = self._config.sensor_timeout * 1e9
+        return last_ns is not None and now_ns - last_ns <= timeout_ns
 
     def _update_orientation(self, ekf: KalmanFilter, inertial: Inertial) -> None:
         if inertial.orientation is None:
@@ -177,7 +179,8 @@ class DeadReckoning:
     def _yaw_rate_variance(self) -> float:
         config = self._config
         if self._rates is None:
-            noise = config.compass_noise**2 if self._compass_ns is not None else np.inf
+            compass = self._recent(self._compass_ns, self._stamp_ns)
+            noise = config.compass_noise**2 if compass else np.inf
             return min(config.turn_rate_noise**2 / TURN_S, 2.0 * noise / TURN_S**2)
         return config.gyro_noise**2 / TURN_S + config.gyro_bias**2
 

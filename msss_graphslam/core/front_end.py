@@ -25,8 +25,11 @@ from msss_graphslam.core.types import Array, Constraint, Scan, Stage
 
 __all__ = ["FrontEnd"]
 
-ROUNDS = 2
-"""Matches of consecutive scans: the first one corrects their layout for the second."""
+ROUNDS = 6
+"""Most matches of consecutive scans: each corrects their layout for the next."""
+
+SETTLED, SETTLED_ANGLE = 0.01, 0.001
+"""Rounds end when the displacement changes by less than this [m], [rad]."""
 
 
 class FrontEnd:
@@ -132,9 +135,14 @@ class FrontEnd:
         if not self._recipe.goes_beyond:
             return constraint
         for _ in range(ROUNDS - 1):
-            if constraint.accepted:
-                self._learn(constraint)
-                constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
+            if not constraint.accepted:
+                break
+            self._learn(constraint)
+            before = constraint.relative_pose
+            constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
+            change = np.abs(constraint.relative_pose - before)
+            if max(change[0], change[1]) < SETTLED and change[2] < SETTLED_ANGLE:
+                break
         return constraint
 
     def _learn(self, constraint: Constraint) -> None:

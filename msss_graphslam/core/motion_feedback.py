@@ -23,21 +23,27 @@ class MotionFeedback:
         self._correlation_time = correlation_time
         self.offset = np.zeros(3)
         self.covariance = np.zeros((3, 3))
-        self._started = False
+        self._predicted: tuple[Array, Array] | None = None
 
     def predict(self, interval: float, stationary: Array) -> None:
         """Let ``interval`` [s] pass; ``stationary`` (3, 3) is the error's a-priori covariance."""
-        decay = float(np.exp(-interval / self._correlation_time)) if self._started else 0.0
-        self._started = True
+        decay = float(np.exp(-interval / self._correlation_time)) if self._predicted else 0.0
         self.offset = decay * self.offset
         self.covariance = decay**2 * self.covariance + (1.0 - decay**2) * stationary
+        self._predicted = self.offset, self.covariance
 
     def update(self, offset: Array, covariance: Array) -> None:
-        """Take in a twist error (3,) that a pair of keyframes showed, with its covariance."""
-        gain = self.covariance @ np.linalg.inv(self.covariance + covariance)
-        self.offset = self.offset + gain @ (offset - self.offset)
-        self.covariance = (np.eye(3) - gain) @ self.covariance
-        self.covariance = 0.5 * (self.covariance + self.covariance.T)
+        """Take in a twist error (3,) that a pair of keyframes showed, with its covariance.
+
+        Takes the place of an earlier update since the last prediction.
+        """
+        if self._predicted is None:
+            raise ValueError("a motion feedback is updated before its first prediction")
+        predicted, spread = self._predicted
+        gain = spread @ np.linalg.inv(spread + covariance)
+        self.offset = predicted + gain @ (offset - predicted)
+        updated = (np.eye(3) - gain) @ spread
+        self.covariance = 0.5 * (updated + updated.T)
 
 
 def offset_motion(motion: Array, elapsed: Array, offset: Array) -> Array:

@@ -13,8 +13,6 @@ import numpy as np
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import (
-    between,
-    compose,
     inverse,
     inverse_jacobian,
     rotation,
@@ -60,15 +58,16 @@ def match_lines(
         current, reference, inverse(initial), turned @ initial_covariance @ turned.T, config
     )
     backward_pose = inverse(backward.pose)
-    difference = between(forward.pose, backward_pose)
-    half = np.append(0.5 * difference[:2], 0.5 * difference[2])
-    pose = compose(forward.pose, half)
+    difference = backward_pose - forward.pose
+    difference[2] = wrap(difference[2])
+    pose = forward.pose + 0.5 * difference
     covariance = 0.5 * (forward.covariance() + backward.covariance_of_inverse())
+    observed = _observed(difference, covariance, config)
     figures = {
         "overlap": min(forward.overlap, backward.overlap),
         "residual": max(forward.scale, backward.scale),
-        "disagreement_m": float(np.hypot(*difference[:2])),
-        "disagreement_rad": float(abs(difference[2])),
+        "disagreement_m": float(np.hypot(*observed[:2])),
+        "disagreement_rad": float(abs(observed[2])),
         "shift": _shift(initial, pose, initial_covariance),
     }
     return MatchResult(pose, covariance, _refusal(figures, config), figures)
@@ -167,6 +166,14 @@ def _dot(first: Array, second: Array) -> Array:
 def _median(values: Array) -> float:
     middle = len(values) // 2
     return float(np.partition(values, middle)[middle])
+
+
+def _observed(difference: Array, covariance: Array, config: Matching) -> Array:
+    """Return the part of a difference that is not along directions the scans say nothing of."""
+    limits = np.diag(
+        [config.disagreement**2, config.disagreement**2, config.disagreement_angle**2]
+    )
+    return np.asarray(limits @ np.linalg.solve(limits + covariance, difference))
 
 
 def _shift(initial: Array, pose: Array, covariance: Array) -> float:

@@ -218,8 +218,9 @@ class Trajectory:
 class Estimate:
     """All that an estimator leaves at the end of a recording.
 
-    ``trajectory`` holds the corrected pose at every beam after all data, ``online`` what a
-    subscriber got at the time, ``dead_reckoning`` the EKF's; the three share their stamps.
+    ``trajectory`` holds the corrected pose at every beam after all data, ``dead_reckoning`` the
+    EKF's at the same stamps; ``online`` what a subscriber got at the time, from when there was
+    something to publish.
     ``keyframes`` carry the scans in their final layout, ``first_scans`` the same scans as dead
     reckoning laid them out. ``constraints`` are all that were tried, in order.
     """

@@ -27,6 +27,8 @@ def summarise(assessment: Assessment) -> dict[str, Any]:
         "scans": len(record.estimate.keyframes),
         "loop_closures": {"tried": record.tried_loops, "accepted": record.accepted_loops},
         "refused": dict(sorted(record.refused.items())),
+        "damage": list(record.bag.damage),
+        "missing": list(record.bag.missing),
         "start_end_gap_m": {
             name: round(start_end_gap(trajectory), _DIGITS)
             for name, trajectory in assessment.trajectories.items()

@@ -23,10 +23,10 @@ def run(
     """Run one estimator over a bag and write every result into ``output``."""
     recipe = recipe_named(estimator)
     recording = open_recording(bag)
+    directory = ResultDirectory.create(output)
     record = estimate(recording, recipe, configuration, progress)
     progress(0.95, "report")
-    assessment = _write(record, ResultDirectory.create(output))
-    write_report(ResultDirectory(output), assessment)
+    write_report(directory, _write(record, directory))
     progress(1.0, "done")
     return record
 
@@ -36,12 +36,13 @@ def compare(
 ) -> list[RunRecord]:
     """Run every estimator; one directory each under ``output`` and one report of all."""
     recording = open_recording(bag)
+    directory = ResultDirectory.create(output)
     assessments = [
         _compared(recording, name, number, output, configuration, progress)
         for number, name in enumerate(ESTIMATORS)
     ]
     progress(0.95, "report")
-    write_comparison_report(ResultDirectory(output), assessments)
+    write_comparison_report(directory, assessments)
     progress(1.0, "done")
     return [assessment.record for assessment in assessments]
 

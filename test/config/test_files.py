@@ -115,5 +115,5 @@ def test_the_table_has_a_row_for_every_parameter() -> None:
 
 
 def test_a_readme_without_the_marks_is_an_error() -> None:
-    with pytest.raises(ValueError, match="the document must hold"):
+    with pytest.raises(ValueError, match="the README must hold"):
         with_table("# A README\n")

@@ -21,6 +21,8 @@ ALWAYS = {
     "scans",
     "loop_closures",
     "refused",
+    "damage",
+    "missing",
     "start_end_gap_m",
     "configuration",
 }

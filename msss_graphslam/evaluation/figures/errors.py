@@ -49,7 +49,9 @@ def corrections(assessments: Sequence[Assessment]) -> Plate:
             (estimate.trajectory, label(run.estimator), "-"),
             (estimate.online, f"{label(run.estimator)}, online", ":"),
         ):
-            difference = path.planar - estimate.dead_reckoning.planar
+            reckoned = estimate.dead_reckoning
+            rows = np.searchsorted(reckoned.stamps_ns, path.stamps_ns)
+            difference = path.planar - reckoned.planar[rows]
             time = minutes(path.stamps_ns, run.record.bag.start_ns)
             shade = colour(run.estimator)
             distance = np.linalg.norm(difference[:, :2], axis=1)

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Studies over many runs, for ``make bench`` and ``make reproduce``."""
+"""What the estimators cost and how accurate they are: ``make bench``, ``make reproduce``."""

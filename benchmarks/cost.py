@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a run costs: as a process, by stage, and scan by scan."""
+
+import os
+import subprocess
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.pipeline import Pipeline
+from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.core.types import Array, ConstraintKind
+from msss_graphslam.recordings.reader import Recording
+
+__all__ = ["ProcessCost", "ScanCosts", "process_cost", "scan_costs"]
+
+FIRST_STAGE = "scan_generation"
+SCAN_STAGES = (
+    FIRST_STAGE,
+    "data_association",
+    "scan_matching",
+    "back_end",
+    "trajectory_correction",
+)
+"""The work on a finished turn; what is done beam by beam, or after the last turn, is not in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessCost:
+    """CPU time [s] of a process and its peak resident memory [MiB]."""
+
+    cpu: float
+    peak_mib: float
+
+
+@dataclass(frozen=True, slots=True)
+class ScanCosts:
+    """CPU time and loop closures, scan by scan.
+
+    ``stages`` holds the times (n,) [s] of each of SCAN_STAGES; ``near`` (n,) counts the earlier
+    scans that were associated with the scan, whether matched or refused.
+    """
+
+    stages: dict[str, Array]
+    near: Array
+
+    @property
+    def total(self) -> Array:
+        """The time (n,) [s] of all stages."""
+        return np.asarray(sum(self.stages.values()))
+
+
+def process_cost(bag: Path, estimator: str, output: Path) -> ProcessCost:
+    """Run ``msss run`` as a process of its own; CalledProcessError where it fails."""
+    command = [
+        *(sys.executable, "-m", "msss_graphslam", "run", str(bag)),
+        *("--out", str(output), "--estimator", estimator, "--quiet"),
+    ]
+    process = subprocess.Popen(command)  # noqa: S603
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return ProcessCost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0)
+
+
+def scan_costs(recording: Recording, estimator: str) -> ScanCosts:
+    """Run an estimator over the recording and measure the work on each of its scans."""
+    watch = _ScanWatch()
+    pipeline = Pipeline(Configuration(), ESTIMATORS[estimator], Counter(), watch.stage)
+    for measurement in recording.measurements(Counter(), Configuration()):
+        pipeline.process(measurement)
+    constraints = pipeline.finish().constraints
+    loops = [edge.second for edge in constraints if edge.kind is ConstraintKind.LOOP]
+    return ScanCosts(
+        stages={name: np.array([scan[name] for scan in watch.scans]) for name in SCAN_STAGES},
+        near=np.bincount(loops, minlength=len(watch.scans)).astype(float),
+    )
+
+
+class _ScanWatch:
+    """CPU time of every stage, scan by scan; a scan's work begins with its generation."""
+
+    def __init__(self) -> None:
+        self.scans: list[defaultdict[str, float]] = []
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time one call of the named stage."""
+        if name == FIRST_STAGE:
+            self.scans.append(defaultdict(float))
+        start = time.process_time()
+        yield
+        if self.scans:
+            self.scans[-1][name] += time.process_time() - start

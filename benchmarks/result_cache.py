@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Results of single runs, kept until the package changes."""
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import msss_graphslam
+from benchmarks import missions
+from benchmarks.missions import Accuracy, Mission
+
+__all__ = ["ResultCache", "fingerprint", "sources"]
+
+PACKAGE = Path(msss_graphslam.__file__).parent
+WITHOUT_EFFECT = {"cli", "figures"}
+"""Folders of the package that no figure of a run depends on."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResultCache:
+    """A file for each run in ``folder``; one made by other sources counts as missing."""
+
+    folder: Path
+    fingerprint: str
+
+    def load(self, mission: Mission, estimator: str) -> Accuracy | None:
+        """Return the run's result, or None where it has to be made; an outdated one is deleted."""
+        path = self._path(mission, estimator)
+        if not path.exists():
+            return None
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        if kept["sources"] != self.fingerprint:
+            path.unlink()
+            return None
+        return Accuracy(**kept["accuracy"])
+
+    def store(self, mission: Mission, estimator: str, accuracy: Accuracy) -> None:
+        """Keep the run's result; the file is written whole or not at all."""
+        path = self._path(mission, estimator)
+        text = json.dumps({"sources": self.fingerprint, "accuracy": asdict(accuracy)}, indent=2)
+        unfinished = path.with_suffix(".part")
+        unfinished.write_text(f"{text}\n", encoding="utf-8")
+        unfinished.replace(path)
+
+    def _path(self, mission: Mission, estimator: str) -> Path:
+        return self.folder / f"{mission}_{estimator}.json"
+
+
+def sources() -> list[Path]:
+    """Return the files that a run's result depends on, sorted."""
+    used = [
+        path
+        for path in PACKAGE.rglob("*.py")
+        if WITHOUT_EFFECT.isdisjoint(path.relative_to(PACKAGE).parts)
+    ]
+    return sorted([*used, Path(missions.__file__)])
+
+
+def fingerprint(paths: Iterable[Path]) -> str:
+    """Return a checksum of the files' names and contents."""
+    checksum = hashlib.sha256()
+    for path in paths:
+        checksum.update(f"{path.name}\0".encode())
+        checksum.update(path.read_bytes())
+        checksum.update(b"\0")
+    return checksum.hexdigest()
