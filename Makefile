@@ -48,7 +48,7 @@ bench: $(STAMP) ## milliseconds a scan by stage, for every estimator
 	$(BIN)/python -m benchmarks.bench
 
 reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
-	$(BIN)/python -m benchmarks.reproduce
+	$(BIN)/python -m benchmarks.reproduce $(OPTIONS)
 
 sample-bag: $(STAMP) ## make the sample bag anew
 	$(BIN)/python bags/make_sample.py
@@ -57,4 +57,4 @@ defaults: $(STAMP) ## write config/ and the README's table from the configuratio
 	$(BIN)/python -m msss_graphslam.config.documentation
 
 clean: ## remove what the targets made
-	rm -rf $(VENV) demo build install log
+	rm -rf $(VENV) demo bench reproduction build install log

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a run costs: as a process, by stage, and scan by scan."""
+"""What a run costs: as a process of its own, and scan by scan."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ from msss_graphslam.recordings.reader import Recording
 __all__ = ["ProcessCost", "ScanCosts", "process_cost", "scan_costs"]
 
 FIRST_STAGE = "scan_generation"
-SCAN_STAGES = (
+STAGES = (
     FIRST_STAGE,
     "data_association",
     "scan_matching",
@@ -43,27 +43,30 @@ class ProcessCost:
 
 @dataclass(frozen=True, slots=True)
 class ScanCosts:
-    """CPU time and loop closures, scan by scan.
+    """CPU time and loop closures of n scans.
 
-    ``stages`` holds the times (n,) [s] of each of SCAN_STAGES; ``near`` (n,) counts the earlier
-    scans that were associated with the scan, whether matched or refused.
+    ``stages`` holds for each of STAGES its times (n,) [s]; ``tried`` (n,) counts the loop closures
+    that were tried with earlier scans.
     """
 
     stages: dict[str, Array]
-    near: Array
+    tried: Array
 
     @property
     def total(self) -> Array:
         """The time (n,) [s] of all stages."""
-        return np.asarray(sum(self.stages.values()))
+        return np.asarray(np.sum(list(self.stages.values()), axis=0))
+
+    def last(self, count: int) -> "ScanCosts":
+        """Return those of the last scans."""
+        stages = {name: times[-count:] for name, times in self.stages.items()}
+        return ScanCosts(stages, self.tried[-count:])
 
 
 def process_cost(bag: Path, estimator: str, output: Path) -> ProcessCost:
     """Run ``msss run`` as a process of its own; CalledProcessError where it fails."""
-    command = [
-        *(sys.executable, "-m", "msss_graphslam", "run", str(bag)),
-        *("--out", str(output), "--estimator", estimator, "--quiet"),
-    ]
+    command = [sys.executable, "-m", "msss_graphslam", "run", str(bag)]
+    command += ["--out", str(output), "--estimator", estimator, "--quiet"]
     process = subprocess.Popen(command)  # noqa: S603
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -72,17 +75,18 @@ def process_cost(bag: Path, estimator: str, output: Path) -> ProcessCost:
     return ProcessCost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0)
 
 
-def scan_costs(recording: Recording, estimator: str) -> ScanCosts:
-    """Run an estimator over the recording and measure the work on each of its scans."""
+def scan_costs(recording: Recording, estimator: str, from_ns: int = 0) -> ScanCosts:
+    """Run an estimator over the recording from a stamp on, and measure the work on each scan."""
     watch = _ScanWatch()
     pipeline = Pipeline(Configuration(), ESTIMATORS[estimator], Counter(), watch.stage)
     for measurement in recording.measurements(Counter(), Configuration()):
-        pipeline.process(measurement)
+        if measurement.stamp_ns >= from_ns:
+            pipeline.process(measurement)
     constraints = pipeline.finish().constraints
     loops = [edge.second for edge in constraints if edge.kind is ConstraintKind.LOOP]
     return ScanCosts(
-        stages={name: np.array([scan[name] for scan in watch.scans]) for name in SCAN_STAGES},
-        near=np.bincount(loops, minlength=len(watch.scans)).astype(float),
+        stages={name: np.array([scan[name] for scan in watch.scans]) for name in STAGES},
+        tried=np.bincount(loops, minlength=len(watch.scans)).astype(float),
     )
 
 

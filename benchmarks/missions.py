@@ -40,7 +40,6 @@ class Accuracy:
 
     Mean position errors: ``anchored`` at the start, ``aligned`` to the truth, ``online`` as
     published at the time, anchored; ``gap`` between start and end, and the vehicle's ``true_gap``.
-    ``closures`` counts the loop closures of the graph.
     """
 
     anchored: float
@@ -48,7 +47,6 @@ class Accuracy:
     online: float
     gap: float
     true_gap: float
-    closures: int
 
 
 def estimates(
@@ -76,7 +74,6 @@ def accuracy(record: RunRecord) -> Accuracy:
         online=float(np.mean(online.anchored)),
         gap=start_end_gap(record.estimate.trajectory),
         true_gap=start_end_gap(record.truth),
-        closures=record.accepted_loops,
     )
 
 

@@ -86,7 +86,11 @@ def accuracy_table(study: Study, world: str, echo: EchoKind) -> Table:
 
 def _statistics(values: Array) -> str:
     figures = (np.mean(values), np.median(values), np.max(values))
-    return " / ".join(f"{figure:.2f}" for figure in figures)
+    return " / ".join(_metres(float(figure)) for figure in figures)
+
+
+def _metres(value: float) -> str:
+    return f"{value:.2f}" if value >= 1.0 else f"{value:.3f}"
 
 
 def _facts(study: Study) -> dict[str, str]:
@@ -94,12 +98,13 @@ def _facts(study: Study) -> dict[str, str]:
 
     def spread(estimator: str) -> str:
         errors = study.values("paper", EchoKind.IDEAL, estimator, POSITION)
-        return f"{errors.min():.2f} m to {errors.max():.2f} m"
+        return f"{_metres(errors.min())} m to {_metres(errors.max())} m"
 
+    drift = study.mean("paper", EchoKind.IDEAL, "dead_reckoning", POSITION)
     true_gaps = study.values("pond", EchoKind.IDEAL, "dead_reckoning", TRUE_GAP)
     return {
-        "drift": f"{study.mean('paper', EchoKind.IDEAL, 'dead_reckoning', POSITION):.2f} m",
+        "drift": f"{_metres(drift)} m",
         "drift_spread": spread("dead_reckoning"),
         "chen2015_spread": spread("chen2015"),
-        "true_gap": f"{true_gaps.max():.2f} m",
+        "true_gap": f"{_metres(true_gaps.max())} m",
     }

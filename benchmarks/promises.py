@@ -31,7 +31,7 @@ class Promise:
         kept = value >= limit if self.at_least else value <= limit
         bound = "≥" if self.at_least else "≤"
         verdict = "" if kept else " (missed)"
-        return f"{bound} {limit:.2f}{self.unit}", f"{value:.2f}{self.unit}{verdict}"
+        return f"{bound} {limit:.2f}{self.unit}", f"{value:.3f}{self.unit}{verdict}"
 
 
 def _mean_of_full(world: str, figure: Figure) -> Callable[[Study, EchoKind], float]:

@@ -79,10 +79,12 @@ class Console:
 
     def table(self, header: Row, rows: Sequence[Row], title: str = "") -> None:
         """Print a table, numbers to the right."""
-        table = rich.table.Table(title=title or None, title_justify="left", box=rich.box.SIMPLE)
-        for name, cells in zip(header, zip(*rows, strict=True), strict=True):
+        table = rich.table.Table(
+            title=title or None, title_justify="left", box=rich.box.SIMPLE_HEAD, pad_edge=False
+        )
+        for number, (name, cells) in enumerate(zip(header, zip(*rows, strict=True), strict=True)):
             justify: JustifyMethod = "right" if all(map(_is_numeric, cells)) else "left"
-            table.add_column(escape(name), justify=justify, no_wrap=True)
+            table.add_column(escape(name), justify=justify, no_wrap=number == 0, overflow="fold")
         for row in rows:
             table.add_row(*map(escape, row))
         self._out.print(table)

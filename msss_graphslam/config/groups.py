@@ -326,7 +326,7 @@ class Association:
         maximum=2.0,
     )
     most: int = parameter(
-        6, "largest number of loop closures tried for a scan (full only)", minimum=1, maximum=1000
+        4, "largest number of loop closures tried for a scan (full only)", minimum=1, maximum=1000
     )
 
 

@@ -44,8 +44,10 @@ class BackEnd:
     def update(self, constraints: Sequence[Constraint]) -> Array:
         """Add accepted constraints and optimise; return all poses (n, 3), equation 4.
 
-        Raises ValueError for a constraint that may not enter a graph (see ``defect``).
+        A constraint to a new keyframe brings the keyframe's first estimate. Raises ValueError for
+        one that may not enter a graph (see ``defect``); then none of them has.
         """
+        self._validate(constraints)
         for constraint in constraints:
             self._admit(constraint)
         try:
@@ -55,13 +57,17 @@ class BackEnd:
         self._added = len(self._initial)
         return self.poses()
 
-    def _admit(self, constraint: Constraint) -> None:
-        """Validate a constraint; one that leads to a new keyframe brings its first estimate."""
+    def _validate(self, constraints: Sequence[Constraint]) -> None:
         known = len(self._initial)
-        reason = defect(constraint, known + 1)
-        if reason:
-            raise ValueError(f"{constraint.first} -> {constraint.second}: {reason}")
-        if constraint.second == known:
+        for constraint in constraints:
+            brings_keyframe = constraint.second == known and constraint.first < known
+            reason = defect(constraint, known + brings_keyframe)
+            if reason:
+                raise ValueError(f"{constraint.first} -> {constraint.second}: {reason}")
+            known += brings_keyframe
+
+    def _admit(self, constraint: Constraint) -> None:
+        if constraint.second == len(self._initial):
             self.add_keyframe(compose(self._pose(constraint.first), constraint.relative_pose))
         self.constraints.append(constraint)
 

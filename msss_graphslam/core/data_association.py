@@ -44,6 +44,7 @@ def associate(
     current_covariance: Array,
     current_descriptor: Array,
     config: Association,
+    most: int | None = None,
 ) -> list[Candidate]:
     """Return the keyframes inside the Mahalanobis gate, in order; Algorithm 3.
 
@@ -62,14 +63,27 @@ def associate(
         (3,), (3, 3) and the shape descriptor of the current scan.
     config
         The thresholds Mt and St; both distances must lie below them.
+    most
+        How many to accept at most, nearest first; None for all, as the paper does.
     """
     distances = squared_mahalanobis(poses[:-1], covariances[:-1], current_pose, current_covariance)
-    candidates = []
-    for index in map(int, np.flatnonzero(distances < config.mahalanobis_threshold)):
+    inside = np.flatnonzero(distances < config.mahalanobis_threshold)
+    candidates: list[Candidate] = []
+    # Deviation: with ``most`` the nearest are taken, and of neighbours in time one: they say much
+    # the same, and the work for a scan stays the same however many have been there before.
+    order = inside if most is None else inside[np.argsort(distances[inside], kind="stable")]
+    for index in map(int, order):
+        if most is not None and not _is_wanted(index, candidates, most):
+            continue
         shape = shape_distance(descriptors[index], current_descriptor)
         refusal = "" if shape < config.shape_threshold else "shape_differs"
         candidates.append(Candidate(index, float(distances[index]), shape, refusal))
-    return candidates
+    return sorted(candidates, key=lambda candidate: candidate.index)
+
+
+def _is_wanted(index: int, candidates: Sequence[Candidate], most: int) -> bool:
+    accepted = [candidate.index for candidate in candidates if candidate.accepted]
+    return len(accepted) < most and all(abs(index - other) > 1 for other in accepted)
 
 
 def squared_mahalanobis(poses: Array, covariances: Array, pose: Array, covariance: Array) -> Array:

@@ -185,7 +185,7 @@ class FrontEnd:
             # Deviation: scans overlap although their poses differ. Where the poses are well known
             # equation 11 would refuse every revisit that is a metre off.
             covariances = covariances + self._overlap(config.reach)
-        candidates = associate(
+        return associate(
             self.poses[:-1],
             covariances[:-1],
             [node.descriptor for node in self.nodes[:-1]],
@@ -193,21 +193,10 @@ class FrontEnd:
             covariances[-1],
             current.descriptor,
             config,
+            config.most if self._recipe.goes_beyond else None,
         )
-        return _spread(candidates, config.most) if self._recipe.goes_beyond else candidates
 
     def _overlap(self, reach: float) -> Array:
         points = self.nodes[-1].scan.body_points
         width = reach * float(np.median(np.hypot(*points.T))) if len(points) else 0.0
         return np.diag([width**2, width**2, np.pi**2])
-
-
-def _spread(candidates: list[Candidate], most: int) -> list[Candidate]:
-    """Return the nearest candidates, no two of them neighbours in time, in order of time."""
-    chosen: list[Candidate] = []
-    for candidate in sorted(candidates, key=lambda entry: entry.mahalanobis):
-        if all(abs(candidate.index - other.index) > 1 for other in chosen):
-            chosen.append(candidate)
-        if len(chosen) == most:
-            break
-    return sorted(chosen, key=lambda entry: entry.index)

@@ -3,18 +3,19 @@
 """Scan matching and pose graph construction, Algorithm 4."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from msss_graphslam.core.back_end import defect
 from msss_graphslam.core.compounding import between, between_covariance
 from msss_graphslam.core.data_association import Candidate
 from msss_graphslam.core.match_result import MatchResult
 from msss_graphslam.core.matchers import ScanMatcher
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
 
-__all__ = ["Node", "consecutive_constraint", "loop_constraints", "odometry_constraint"]
+__all__ = ["Node", "consecutive_constraint", "loop_constraints", "matched", "odometry_constraint"]
 
 
 @dataclass
@@ -49,7 +50,8 @@ def consecutive_constraint(
     result = matcher.match(
         nodes[last - 1].prepared, nodes[last].prepared, initial, initial_covariance
     )
-    return _constraint(ConstraintKind.CONSECUTIVE, last - 1, last, result, {})
+    guess = Constraint(ConstraintKind.CONSECUTIVE, last - 1, last, initial, initial_covariance)
+    return matched(guess, result)
 
 
 def loop_constraints(
@@ -75,24 +77,29 @@ def loop_constraints(
         covariance = between_covariance(  # line 10
             pose, node.covariance, poses[current], nodes[current].covariance
         )
-        result = MatchResult(initial, covariance, candidate.refusal)
+        guess = Constraint(
+            ConstraintKind.LOOP,
+            candidate.index,
+            current,
+            initial,
+            covariance,
+            candidate.refusal,
+            figures,
+        )
         if candidate.accepted:
             result = matcher.match(node.prepared, nodes[current].prepared, initial, covariance)
-        constraints.append(
-            _constraint(ConstraintKind.LOOP, candidate.index, current, result, figures)
-        )
+            guess = matched(guess, result)
+        constraints.append(guess)
     return constraints
 
 
-def _constraint(
-    kind: ConstraintKind, first: int, second: int, result: MatchResult, figures: dict[str, float]
-) -> Constraint:
-    return Constraint(
-        kind,
-        first,
-        second,
-        np.asarray(result.relative_pose),
-        np.asarray(result.covariance),
-        result.refusal,
-        {**figures, **result.figures},
+def matched(constraint: Constraint, result: MatchResult) -> Constraint:
+    """Return the constraint with what a match says of it, refused if no graph could take it."""
+    found = replace(
+        constraint,
+        relative_pose=np.asarray(result.relative_pose),
+        covariance=np.asarray(result.covariance),
+        refusal=result.refusal,
+        figures={**constraint.figures, **result.figures},
     )
+    return found if result.refusal else replace(found, refusal=defect(found, found.second + 1))

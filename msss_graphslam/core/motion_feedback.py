@@ -52,9 +52,9 @@ def offset_motion(motion: Array, elapsed: Array, offset: Array) -> Array:
     Every step between beams is composed with ``offset`` times its duration, as in equation 14.
     """
     durations = np.diff(elapsed, prepend=elapsed[0])
-    yaw = motion[:, 2] + offset[2] * elapsed
-    steps = np.diff(motion[:, 0] + 1j * motion[:, 1], prepend=motion[0, 0] + 1j * motion[0, 1])
-    steps = steps * np.exp(1j * offset[2] * elapsed)
-    drift = (offset[0] + 1j * offset[1]) * durations * np.exp(1j * yaw)
-    position = motion[0, 0] + 1j * motion[0, 1] + np.cumsum(steps + drift)
-    return np.column_stack([position.real, position.imag, yaw])
+    turned = offset[2] * np.concatenate([elapsed[:1], elapsed[:-1]])
+    reckoned = motion[:, 0] + 1j * motion[:, 1]
+    steps = np.diff(reckoned, prepend=reckoned[0])
+    drift = (offset[0] + 1j * offset[1]) * durations * np.exp(1j * motion[:, 2])
+    position = reckoned[0] + np.cumsum(np.exp(1j * turned) * (steps + drift))
+    return np.column_stack([position.real, position.imag, motion[:, 2] + offset[2] * elapsed])

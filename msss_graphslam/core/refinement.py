@@ -6,7 +6,7 @@
 # the largest error left; laid out by the optimised graph they match better, until it settles.
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.compounding import between
-from msss_graphslam.core.graph_construction import Node
+from msss_graphslam.core.graph_construction import Node, matched
 from msss_graphslam.core.matchers import ScanMatcher
 from msss_graphslam.core.scan_generation import lay_out
 from msss_graphslam.core.trajectory_correction import closed_form, correct_motion
@@ -91,10 +91,4 @@ def _again(
     first, second = constraint.first, constraint.second
     initial = between(poses[first], poses[second])
     result = matcher.match(nodes[first].prepared, nodes[second].prepared, initial, UNCERTAINTY)
-    return replace(
-        constraint,
-        relative_pose=result.relative_pose,
-        covariance=result.covariance,
-        refusal=result.refusal,
-        figures={**constraint.figures, **result.figures},
-    )
+    return matched(constraint, result)

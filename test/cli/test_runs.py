@@ -62,7 +62,7 @@ def test_a_clean_run_prints_a_table_and_where_the_report_is(run: tuple[Path, Don
     assert done.returncode == 0
     assert re.search(r"^ *full +\d", done.stdout, flags=re.MULTILINE)
     assert re.search(r"^ *dead_reckoning +\d", done.stdout, flags=re.MULTILINE)
-    assert f"report: {out / 'report.html'}" in done.stderr
+    assert f"report: {out / 'report.html'}" in done.stdout.splitlines()
     assert "\x1b" not in done.stdout + done.stderr
 
 

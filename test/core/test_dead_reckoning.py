@@ -90,7 +90,7 @@ def test_straight_ahead_at_the_assumed_speed() -> None:
     assert not run.refused
 
 
-def test_a_circle_comes_back_after_a_quarter_further_each_time() -> None:
+def test_a_circle_closes() -> None:
     radius, rate = 1.0, 0.1
     run = Run().feed(turning(2.0 * np.pi / rate, rate))
     poses = np.array([entry.pose for entry in run.odometry])

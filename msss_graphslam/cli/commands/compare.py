@@ -38,6 +38,6 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
         record.estimator: ResultDirectory(arguments.out / record.estimator).read_summary()
         for record in records
     }
-    console.result(data, lambda: show_runs(console, records))
-    console.remark(f"report: {arguments.out / 'report.html'}")
+    report = arguments.out / "report.html"
+    console.result(data, lambda: show_runs(console, records, report))
     return console.lost(lost_data(records[0]))

@@ -39,6 +39,6 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
             arguments.bag, arguments.out, arguments.estimator, configuration, progress
         )
     summary = ResultDirectory(arguments.out).read_summary()
-    console.result(summary, lambda: show_runs(console, [record]))
-    console.remark(f"report: {arguments.out / 'report.html'}")
+    report = arguments.out / "report.html"
+    console.result(summary, lambda: show_runs(console, [record], report))
     return console.lost(lost_data(record))

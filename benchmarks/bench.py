@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""``make bench``: what every estimator costs, by stage, as a process, and as a mission goes on."""
+
+from argparse import ArgumentParser
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from benchmarks.bench_tables import growth_table, process_table, stage_table
+from benchmarks.cost import process_cost, scan_costs
+from benchmarks.missions import keep_silent
+from benchmarks.tables import Table
+from msss_graphslam.cli.console import Console
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.offline.estimation import estimate
+from msss_graphslam.recordings.reader import open_recording
+from msss_graphslam.simulation.recording import simulate
+from msss_graphslam.simulation.worlds import World, world_named
+
+__all__ = ["main"]
+
+SEED = 1
+
+ABOUT = """\
+Times depend on the machine and on what else it does: compare ratios and shares.
+
+First the paper's basin with real echoes. Then, where loops are closed, the same turns at the end of
+a lap through the marina twice: after the whole lap, and after a few turns. Scans that are too far to
+be associated must not cost time; a loop closure that is tried does."""
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Make the bags that are missing, measure, print the tables and write them."""
+    parser = ArgumentParser(prog="python -m benchmarks.bench", description=__doc__)
+    parser.add_argument(
+        "--out", type=Path, default=Path("bench"), help="folder of bags and tables"
+    )
+    folder = parser.parse_args(arguments).out
+    folder.mkdir(parents=True, exist_ok=True)
+    console = Console()
+    page = ["# What a run costs", ABOUT]
+    console.line(ABOUT)
+    for table in _tables(folder, console):
+        table.show(console)
+        page += [f"## {table.title}", table.markdown()]
+    (folder / "bench.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
+
+
+def _tables(folder: Path, console: Console) -> Iterator[Table]:
+    basin = _bag(world_named("paper"), folder, console)
+    yield _processes(basin, folder, console)
+    for recipe in ESTIMATORS.values():
+        console.remark(f"{recipe.name} by stage")
+        yield stage_table(estimate(open_recording(basin), recipe, Configuration(), keep_silent))
+    marina = _bag(replace(world_named("marina"), laps=1), folder, console)
+    for recipe in ESTIMATORS.values():
+        if recipe.closes_loops:
+            console.remark(f"{recipe.name} scan by scan")
+            yield _growth(marina, recipe.name)
+
+
+def _processes(bag: Path, folder: Path, console: Console) -> Table:
+    recording = open_recording(bag)
+    costs = {}
+    for name in ESTIMATORS:
+        console.remark(f"msss run --estimator {name}")
+        costs[name] = process_cost(bag, name, folder / name)
+    return process_table(costs, (recording.end_ns - recording.start_ns) * 1e-9)
+
+
+def _growth(bag: Path, estimator: str) -> Table:
+    recording = open_recording(bag)
+    late = recording.end_ns - (recording.end_ns - recording.start_ns) // 4
+    whole = scan_costs(recording, estimator)
+    return growth_table(estimator, whole, scan_costs(recording, estimator, late))
+
+
+def _bag(world: World, folder: Path, console: Console) -> Path:
+    """Return the world's bag in the folder; one that is there from an earlier call is kept."""
+    path = folder / f"{world.name}_{SEED}"
+    if not path.exists():
+        console.remark(f"simulating {world.name}")
+        with TemporaryDirectory(dir=folder) as unfinished:
+            simulate(world, SEED, Path(unfinished)).bag.rename(path)
+    return path
+
+
+if __name__ == "__main__":
+    main()

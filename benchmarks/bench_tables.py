@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tables of ``make bench``."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from benchmarks.cost import ProcessCost, ScanCosts
+from benchmarks.tables import Table
+from msss_graphslam.cli.console import Row
+from msss_graphslam.results.record import RunRecord
+
+__all__ = ["growth_table", "process_table", "stage_table"]
+
+LEAST_SPEED = 100.0
+"""Mission seconds that an estimator shall work off in a CPU second."""
+
+MOST_MEMORY = 500.0
+"""Peak memory [MiB] that a run shall stay under."""
+
+
+def process_table(costs: Mapping[str, ProcessCost], duration: float) -> Table:
+    """Return a row an estimator: a whole process over a mission of ``duration`` [s]."""
+    rows = [
+        [
+            name,
+            f"{cost.cpu:.1f}",
+            _verdict(duration / cost.cpu, duration / cost.cpu >= LEAST_SPEED),
+            _verdict(cost.peak_mib, cost.peak_mib < MOST_MEMORY),
+        ]
+        for name, cost in costs.items()
+    ]
+    header = [
+        "estimator",
+        "CPU [s]",
+        f"mission s per CPU s (≥ {LEAST_SPEED:.0f})",
+        f"peak memory [MiB] (< {MOST_MEMORY:.0f})",
+    ]
+    return Table(f"msss run as a process, {duration:.0f} s of mission", header, rows)
+
+
+def stage_table(record: RunRecord) -> Table:
+    """Return a row a stage: its calls, time a call, time a scan and share of the estimation."""
+    stages, wall = record.cost.stages, record.cost.wall
+    scans = len(record.estimate.keyframes)
+    rows = [
+        [
+            name.replace("_", " "),
+            str(len(times)),
+            f"{1e3 * float(np.mean(times)):.3f}",
+            *_share(float(np.sum(times)), wall, scans),
+        ]
+        for name, times in stages.items()
+    ]
+    rest = wall - sum(float(np.sum(times)) for times in stages.values())
+    rows.append(["reading and the rest", "", "", *_share(rest, wall, scans)])
+    rows.append(["estimation", "", "", *_share(wall, wall, scans)])
+    header = ["stage", "calls", "ms per call", "ms per scan", "share [%]"]
+    return Table(f"{record.estimator}, {scans} scans", header, rows)
+
+
+def growth_table(estimator: str, whole: ScanCosts, end: ScanCosts) -> Table:
+    """Compare the last turns of a mission after the whole of it, and after its ``end`` alone.
+
+    The later half of the end is compared; figures are medians, of tried loop closures means.
+    """
+    count = (len(end.tried) + 1) // 2
+    header = [
+        "earlier scans",
+        "loop closures tried",
+        *(name.replace("_", " ") for name in whole.stages),
+        "all",
+    ]
+    rows = []
+    for costs in (end, whole):
+        last = costs.last(count)
+        times = [*last.stages.values(), last.total]
+        rows.append(
+            [
+                str(len(costs.tried) - count),
+                f"{np.mean(last.tried):.1f}",
+                *(f"{1e3 * np.median(values):.2f}" for values in times),
+            ]
+        )
+    return Table(f"{estimator}: ms per scan, the last {count} turns of a lap", header, rows)
+
+
+def _share(seconds: float, wall: float, scans: int) -> Row:
+    return [f"{1e3 * seconds / scans:.2f}", f"{100.0 * seconds / wall:.1f}"]
+
+
+def _verdict(value: float, kept: bool) -> str:
+    return f"{value:.0f}" if kept else f"{value:.0f} (missed)"

@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+
+from msss_graphslam.core.compounding import between, compose
+from msss_graphslam.core.motion_feedback import MotionFeedback, offset_motion
+from msss_graphslam.core.types import Array
+
+TIME = 100.0
+STATIONARY = np.diag([0.03, 0.01, 0.002]) ** 2
+
+
+def test_starts_with_what_dead_reckoning_says_of_itself() -> None:
+    feedback = MotionFeedback(TIME)
+    feedback.predict(10.0, STATIONARY)
+    np.testing.assert_array_equal(feedback.offset, np.zeros(3))
+    np.testing.assert_array_equal(feedback.covariance, STATIONARY)
+
+
+def test_the_stationary_covariance_stays() -> None:
+    feedback = MotionFeedback(TIME)
+    for _ in range(50):
+        feedback.predict(10.0, STATIONARY)
+    np.testing.assert_allclose(feedback.covariance, STATIONARY)
+
+
+def test_update_is_the_product_of_two_gaussians() -> None:
+    feedback = MotionFeedback(TIME)
+    feedback.predict(10.0, STATIONARY)
+    seen, doubt = np.array([0.04, -0.01, 0.001]), np.diag([0.02, 0.02, 0.001]) ** 2
+    feedback.update(seen, doubt)
+    information = np.linalg.inv(STATIONARY) + np.linalg.inv(doubt)
+    np.testing.assert_allclose(feedback.covariance, np.linalg.inv(information))
+    np.testing.assert_allclose(
+        feedback.offset, np.linalg.solve(information, np.linalg.solve(doubt, seen))
+    )
+
+
+def test_a_sharp_word_is_believed_and_a_dull_one_is_not() -> None:
+    for deviation, share in ((1e-6, 1.0), (1e3, 0.0)):
+        feedback = MotionFeedback(TIME)
+        feedback.predict(10.0, STATIONARY)
+        feedback.update(np.array([0.05, 0.02, 0.003]), deviation**2 * np.eye(3))
+        np.testing.assert_allclose(
+            feedback.offset, share * np.array([0.05, 0.02, 0.003]), atol=1e-6
+        )
+
+
+def test_what_was_learned_fades_with_the_correlation_time() -> None:
+    feedback = MotionFeedback(TIME)
+    feedback.predict(10.0, STATIONARY)
+    feedback.update(np.array([0.05, 0.0, 0.0]), 1e-12 * np.eye(3))
+    learned = feedback.offset[0]
+    feedback.predict(TIME, STATIONARY)
+    np.testing.assert_allclose(feedback.offset[0], learned * np.exp(-1.0))
+    np.testing.assert_allclose(
+        feedback.covariance, (1.0 - np.exp(-2.0)) * STATIONARY, rtol=1e-3, atol=1e-9
+    )
+
+
+def test_many_words_converge_on_a_constant_error() -> None:
+    rng = np.random.default_rng(0)
+    error, doubt = np.array([0.03, -0.008, 0.001]), np.diag([0.01, 0.01, 0.001])
+    feedback = MotionFeedback(1e6)
+    for _ in range(400):
+        feedback.predict(10.0, STATIONARY)
+        feedback.update(error + doubt @ rng.normal(size=3), doubt**2)
+    np.testing.assert_allclose(feedback.offset, error, atol=0.002)
+    assert np.linalg.eigvalsh(feedback.covariance)[0] > 0.0
+
+
+def winding(count: int) -> tuple[Array, Array]:
+    """A motion (b, 3) from the origin and the uneven times (b,) of its poses [s]."""
+    rng = np.random.default_rng(1)
+    elapsed = np.concatenate([[0.0], np.cumsum(rng.uniform(0.02, 0.3, count - 1))])
+    motion = [np.zeros(3)]
+    for step in rng.normal(0.0, [0.02, 0.01, 0.05], (count - 1, 3)):
+        motion.append(compose(motion[-1], step))
+    return np.array(motion), elapsed
+
+
+def test_offset_is_composed_with_every_step_as_in_equation_14() -> None:
+    motion, elapsed = winding(60)
+    offset = np.array([0.05, -0.03, 0.02])
+    pose, expected = np.zeros(3), [np.zeros(3)]
+    steps = between(motion[:-1], motion[1:])
+    for step, duration in zip(steps, np.diff(elapsed), strict=True):
+        pose = compose(pose, compose(step, offset * duration))
+        expected.append(pose)
+    result = offset_motion(motion, elapsed, offset)
+    np.testing.assert_allclose(result[:, :2], np.array(expected)[:, :2], atol=1e-12)
+    turned = np.exp(1j * result[:, 2])
+    np.testing.assert_allclose(turned, np.exp(1j * np.array(expected)[:, 2]), atol=1e-12)
+
+
+def test_no_offset_leaves_the_motion() -> None:
+    motion, elapsed = winding(30)
+    np.testing.assert_allclose(offset_motion(motion, elapsed, np.zeros(3)), motion, atol=1e-14)
+
+
+def test_one_pose_does_not_move() -> None:
+    moved = offset_motion(np.zeros((1, 3)), np.zeros(1), np.array([1.0, 1.0, 1.0]))
+    np.testing.assert_array_equal(moved, np.zeros((1, 3)))
