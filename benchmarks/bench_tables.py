@@ -60,20 +60,21 @@ def stage_table(record: RunRecord) -> Table:
     return Table(f"{record.estimator}, {scans} scans", header, rows)
 
 
-def growth_table(estimator: str, whole: ScanCosts, end: ScanCosts) -> Table:
-    """Compare the last turns of a mission after the whole of it, and after its ``end`` alone.
+def growth_table(estimator: str, few: ScanCosts, many: ScanCosts) -> Table:
+    """Compare the same turns after ``few`` and after ``many`` others.
 
-    The later half of the end is compared; figures are medians, of tried loop closures means.
+    Both runs end at the same time; the later half of the shorter one is compared. Times are
+    medians, numbers of loop closures means.
     """
-    count = (len(end.tried) + 1) // 2
+    count = (len(few.tried) + 1) // 2
     header = [
         "earlier scans",
         "loop closures tried",
-        *(name.replace("_", " ") for name in whole.stages),
+        *(name.replace("_", " ") for name in many.stages),
         "all",
     ]
     rows = []
-    for costs in (end, whole):
+    for costs in (few, many):
         last = costs.last(count)
         times = [*last.stages.values(), last.total]
         rows.append(
@@ -83,7 +84,7 @@ def growth_table(estimator: str, whole: ScanCosts, end: ScanCosts) -> Table:
                 *(f"{1e3 * np.median(values):.2f}" for values in times),
             ]
         )
-    return Table(f"{estimator}: ms per scan, the last {count} turns of a lap", header, rows)
+    return Table(f"{estimator}: ms per scan, the same {count} turns", header, rows)
 
 
 def _share(seconds: float, wall: float, scans: int) -> Row:

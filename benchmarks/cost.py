@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from msss_graphslam.cli.exit_codes import ExitCode
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
@@ -70,17 +71,24 @@ def process_cost(bag: Path, estimator: str, output: Path) -> ProcessCost:
     process = subprocess.Popen(command)  # noqa: S603
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
+    if process.returncode not in (ExitCode.CLEAN, ExitCode.DATA_LOST):
         raise subprocess.CalledProcessError(process.returncode, command)
     return ProcessCost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0)
 
 
-def scan_costs(recording: Recording, estimator: str, from_ns: int = 0) -> ScanCosts:
-    """Run an estimator over the recording from a stamp on, and measure the work on each scan."""
+def scan_costs(
+    recording: Recording, estimator: str, start: float = 0.0, end: float = 1.0
+) -> ScanCosts:
+    """Run an estimator over a part of the recording and measure the work on each of its scans.
+
+    ``start`` and ``end`` are shares of the recording's duration.
+    """
+    duration = recording.end_ns - recording.start_ns
+    first, last = (recording.start_ns + int(share * duration) for share in (start, end))
     watch = _ScanWatch()
     pipeline = Pipeline(Configuration(), ESTIMATORS[estimator], Counter(), watch.stage)
     for measurement in recording.measurements(Counter(), Configuration()):
-        if measurement.stamp_ns >= from_ns:
+        if first <= measurement.stamp_ns <= last:
             pipeline.process(measurement)
     constraints = pipeline.finish().constraints
     loops = [edge.second for edge in constraints if edge.kind is ConstraintKind.LOOP]

@@ -16,7 +16,7 @@ __all__ = ["level", "rate_derivatives", "rate_matrix", "rotation_derivatives", "
 
 def rotation_matrix(angles: Array) -> Array:
     """Return the body-to-world rotation (3, 3): the upper left block of J(X), equation 6."""
-    roll, pitch, yaw = (float(angle) for angle in angles)
+    roll, pitch, yaw = angles.tolist()
     cr, sr = math.cos(roll), math.sin(roll)
     cp, sp = math.cos(pitch), math.sin(pitch)
     cy, sy = math.cos(yaw), math.sin(yaw)
@@ -36,7 +36,8 @@ def rotation_derivatives(rotation: Array, yaw: float, vector: Array) -> Array:
     the body's x, pitch's the y axis turned by ``yaw`` [rad], yaw's the world's z.
     """
     x, y, z = (rotation @ vector).tolist()
-    about_roll = rotation @ np.array([0.0, -vector[2], vector[1]])
+    _, sway, heave = vector.tolist()
+    about_roll = (rotation @ np.array([0.0, -heave, sway])).tolist()
     cy, sy = math.cos(yaw), math.sin(yaw)
     return np.array(
         [
@@ -49,16 +50,16 @@ def rotation_derivatives(rotation: Array, yaw: float, vector: Array) -> Array:
 
 def rate_matrix(angles: Array) -> Array:
     """Return body rates to angle rates (3, 3): the lower right block of J(X), equation 6."""
-    roll, pitch = float(angles[0]), float(angles[1])
+    roll, pitch, _ = angles.tolist()
     cr, sr, tp, cp = math.cos(roll), math.sin(roll), math.tan(pitch), math.cos(pitch)
     return np.array([[1.0, sr * tp, cr * tp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])
 
 
 def rate_derivatives(angles: Array, rates: Array) -> Array:
     """Return d(rate_matrix @ rates)/d(angles), (3, 3)."""
-    roll, pitch = float(angles[0]), float(angles[1])
+    roll, pitch, _ = angles.tolist()
     cr, sr, tp, cp = math.cos(roll), math.sin(roll), math.tan(pitch), math.cos(pitch)
-    q, r = float(rates[1]), float(rates[2])
+    _, q, r = rates.tolist()
     along, across = cr * q - sr * r, sr * q + cr * r
     return np.array(
         [

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Beam segmentation by a dynamic threshold (Section III-C): an echo profile becomes ranges."""
 
+import math
+
 import numpy as np
 
 from msss_graphslam.config.groups import Segmentation, Sonar
@@ -39,10 +41,8 @@ class BeamSegmenter:
 
         It is ``empty`` when the head heard nothing: fewer than two bins, or no code but 0.
         """
-        if not self._is_readable(beam):
+        if not _is_audible(beam) or not self._takes(beam.ranges):
             return _empty(beam)
-        if not np.array_equal(beam.ranges, self._ranges):
-            self._start(beam.ranges)
         levels = to_decibels(beam.intensities, self._scale)
         levels = np.convolve(levels, self._kernel, "same") / self._coverage
         config = self._config
@@ -51,22 +51,21 @@ class BeamSegmenter:
         )
         return self._reading(beam, echoes.first(config.candidates))
 
-    @staticmethod
-    def _is_readable(beam: Beam) -> bool:
-        ranges, codes = beam.ranges, beam.intensities
-        return bool(
-            ranges.size > 1
-            and ranges.shape == codes.shape
-            and ranges[0] >= 0.0
-            and np.all(ranges[1:] > ranges[:-1])
-            and np.isfinite(ranges[-1])
-            and np.isfinite(beam.bearing)
-            and np.any(codes > 0)
-        )
+    def _takes(self, ranges: Array) -> bool:
+        """Whether the bins can be read; new ones, if they can, start the learning anew."""
+        if np.array_equal(ranges, self._ranges):
+            return True
+        if ranges.size < 2 or ranges[0] < 0.0 or not np.isfinite(ranges[-1]):
+            return False
+        if not np.all(ranges[1:] > ranges[:-1]):
+            return False
+        self._start(ranges)
+        return True
 
     def _start(self, ranges: Array) -> None:
         """Forget what was learned with other settings of the head."""
         self._ranges = ranges.copy()
+        self._bins = np.arange(ranges.size)
         self._bin_size = float(np.median(np.diff(ranges)))
         self._kernel = smoothing_kernel(self._config.echo_length, self._bin_size, ranges.size)
         self._coverage = np.convolve(np.ones(ranges.size), self._kernel, "same")
@@ -89,7 +88,7 @@ class BeamSegmenter:
         return Reading(
             stamp_ns=beam.stamp_ns,
             bearing=beam.bearing,
-            ranges=np.interp(middle, np.arange(self._ranges.size), self._ranges),
+            ranges=np.interp(middle, self._bins, self._ranges),
             variances=self._variances(echoes),
             levels=echoes.levels,
             maximum_range=float(self._ranges[-1]),
@@ -106,6 +105,14 @@ class BeamSegmenter:
         jitter = half_length * self._config.speckle / self._config.echo_drop
         relief = self._config.surface_roughness
         return self._bin_size**2 / 12.0 + relief**2 + 0.25 * jitter**2
+
+
+def _is_audible(beam: Beam) -> bool:
+    return bool(
+        beam.ranges.shape == beam.intensities.shape
+        and math.isfinite(beam.bearing)
+        and (beam.intensities > 0.0).any()
+    )
 
 
 def _empty(beam: Beam) -> Reading:

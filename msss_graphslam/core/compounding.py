@@ -7,6 +7,8 @@ R. Smith, M. Self and P. Cheeseman, Estimating uncertain spatial relationships i
 broadcasts over the leading axes. Angles come out in (-pi, pi].
 """
 
+import math
+
 import numpy as np
 
 from msss_graphslam.core.types import Array
@@ -21,12 +23,18 @@ __all__ = [
     "rotation",
     "transform_points",
     "wrap",
+    "wrap_angle",
 ]
 
 
 def wrap(angle: Array | float) -> Array:
     """Return the angle(s) [rad] in (-pi, pi]."""
     return np.pi - np.mod(np.pi - np.asarray(angle, dtype=float), 2.0 * np.pi)
+
+
+def wrap_angle(angle: float) -> float:
+    """Return one angle [rad] in (-pi, pi]: ``wrap`` without the cost of an array."""
+    return math.pi - (math.pi - angle) % (2.0 * math.pi)
 
 
 def rotation(yaw: Array | float) -> Array:

@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 
 from msss_graphslam.config.groups import DeadReckoning as DeadReckoningConfig
-from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.compounding import wrap, wrap_angle
 from msss_graphslam.core.kalman_filter import (
     ATTITUDE,
     VELOCITY_ERROR,
@@ -47,6 +47,7 @@ class DeadReckoning:
         self._rates: Array | None = None
         self._inertial_ns: int | None = None
         self._compass_ns: int | None = None
+        self._unsensed = 0.0
         self._refused_since: dict[str, int] = {}
 
     def process(self, measurement: Measurement) -> list[Odometry]:
@@ -96,6 +97,7 @@ class DeadReckoning:
             if rates is not None and self._rates is not None:
                 rates = 0.5 * (rates + self._rates)
         if rates is None:
+            self._unsensed += interval
             ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise)
         else:
             ekf.predict(interval, rates, self._config.gyro_noise)
@@ -113,10 +115,10 @@ class DeadReckoning:
         variance = self._config.compass_noise**2
         for offset, name in enumerate(("roll", "pitch")):
             index = ATTITUDE.start + offset
-            difference = float(wrap(inertial.orientation[offset] - ekf.state[index]))
+            difference = wrap_angle(float(inertial.orientation[offset] - ekf.state[index]))
             if self._admits(ekf, name, index, difference, variance):
                 ekf.update(index, difference, variance)
-        difference = float(wrap(inertial.orientation[2] - ekf.state[YAW]))
+        difference = wrap_angle(float(inertial.orientation[2] - ekf.state[YAW]))
         if self._admits(ekf, "yaw", YAW, difference, variance):
             ekf.update_heading(difference, variance, self._heading_gain(ekf, variance))
 
@@ -124,9 +126,9 @@ class DeadReckoning:
         # Deviation: with equation 10 the compass, whose bias wanders by degrees, would shake the
         # heading within a turn, where a scan needs it steady. The gyro gives the short term.
         last, self._compass_ns = self._compass_ns, self._stamp_ns
-        if self._rates is None:
-            uncertainty = float(ekf.covariance[YAW, YAW])
-            return uncertainty / (uncertainty + variance)
+        unsensed, self._unsensed = self._unsensed, 0.0
+        if self._rates is None or unsensed > self._config.sensor_timeout:
+            return ekf.heading_gain(variance)
         interval = 0.0 if last is None else (self._stamp_ns - last) * 1e-9
         return -math.expm1(-interval / self._config.heading_time_constant)
 

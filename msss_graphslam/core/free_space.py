@@ -58,11 +58,14 @@ def free_places(rays: Rays, resolution: float, width: float) -> Array:
     counts = np.maximum(counts, 0).reshape(-1)
     line = np.repeat(np.arange(len(counts)), counts)
     step = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
-    ray, member = np.divmod(line, len(first))
-    bearings = rays.bearings[:, None] + offsets
-    directions = np.stack([np.cos(bearings), np.sin(bearings)]).reshape(2, -1)
-    return np.asarray(
-        rays.starts.T[:, ray] + spacing * (first[member] + step) * directions[:, line]
+    bearings = (rays.bearings[:, None] + offsets).reshape(-1)
+    starts = np.repeat(rays.starts.T, len(first), axis=1)
+    distances = spacing * (np.tile(first, len(rays.lengths))[line] + step)
+    return np.stack(
+        [
+            starts[0, line] + distances * np.cos(bearings)[line],
+            starts[1, line] + distances * np.sin(bearings)[line],
+        ]
     )
 
 

@@ -103,6 +103,9 @@ class TurnDetector:
             self._start(reading)
             return None
         last = self._readings[-1]
+        if reading.stamp_ns <= last.stamp_ns:
+            self._refused["beam_not_newer"] += 1
+            return None
         step = float(wrap(reading.bearing - last.bearing))
         if reading.stamp_ns - last.stamp_ns > self._gap_ns:
             self._drop("turn_dropped_for_a_gap", reading)

@@ -20,7 +20,11 @@ __all__ = ["ATTITUDE", "SIZE", "VELOCITY_ERROR", "YAW", "KalmanFilter", "Z", "tr
 SIZE = 10
 POSITION, ATTITUDE, VELOCITY_ERROR = slice(0, 3), slice(3, 6), slice(6, 9)
 Z, YAW, COMPASS_BIAS = 2, 5, 9
-DIAGONAL = np.arange(SIZE)
+DIAGONAL = slice(None, None, SIZE + 1)
+"""The diagonal's places in a flat (10, 10) matrix."""
+IDENTITY = np.eye(SIZE)
+COMPASS = np.isin(np.arange(SIZE), (YAW, COMPASS_BIAS)).astype(float)
+"""What the compass shows of the state (10,): the yaw and its own bias."""
 
 
 def transition(
@@ -41,7 +45,7 @@ def transition(
     predicted[POSITION] += interval * to_world @ velocity  # eq. 6
     predicted[ATTITUDE] += interval * rate_matrix(angles) @ rates  # eq. 6
     predicted[VELOCITY_ERROR] *= decay
-    jacobian = np.eye(SIZE)
+    jacobian = IDENTITY.copy()
     jacobian[POSITION, ATTITUDE] = interval * rotation_derivatives(
         to_world, float(angles[2]), velocity
     )
@@ -59,20 +63,22 @@ class KalmanFilter:
     ) -> None:
         self._config = config
         self._assumed_velocity = np.array([config.surge_speed, 0.0, 0.0])
-        self._stationary = np.array([config.surge_noise, config.sway_noise, config.heave_noise])
+        self._stationary = (
+            np.array([config.surge_noise, config.sway_noise, config.heave_noise]) ** 2
+        )
         self.state = np.zeros(SIZE)
         self.state[Z] = z
         self.state[ATTITUDE] = attitude
         variances = np.zeros(SIZE)
         variances[Z] = config.depth_noise**2
         variances[ATTITUDE] = variance
-        variances[VELOCITY_ERROR] = self._stationary**2
+        variances[VELOCITY_ERROR] = self._stationary
         self.covariance = np.diag(variances)
 
     @property
     def velocity(self) -> Array:
         """The estimated body velocity (3,) [m/s]."""
-        return np.asarray(self._assumed_velocity + self.state[VELOCITY_ERROR])
+        return self._assumed_velocity + self.state[VELOCITY_ERROR]
 
     def predict(self, interval: float, rates: Array, rate_noise: float) -> None:
         """Propagate over ``interval`` [s] with body ``rates`` (3,), equations 7 and 8.
@@ -96,27 +102,30 @@ class KalmanFilter:
         jacobian[COMPASS_BIAS, COMPASS_BIAS] = compass_decay
         noise = np.zeros(SIZE)
         noise[ATTITUDE] = rate_noise**2 * interval
-        noise[VELOCITY_ERROR] = self._stationary**2 * (1.0 - decay**2)
+        noise[VELOCITY_ERROR] = self._stationary * (1.0 - decay**2)
         noise[COMPASS_BIAS] = config.compass_drift**2 * (1.0 - compass_decay**2)
         self.covariance = jacobian @ self.covariance @ jacobian.T  # eq. 8
-        self.covariance[DIAGONAL, DIAGONAL] += noise
+        self.covariance.reshape(-1)[DIAGONAL] += noise
 
     def update(self, index: int, difference: float, variance: float) -> None:
         """Take in measurement minus prediction of one state, equations 9 and 10."""
         projected = self.covariance[:, index]
         gain = projected / (projected[index] + variance)
-        self.state = self.state + gain * difference
-        self.covariance = self.covariance - np.outer(gain, projected)
+        self.state += gain * difference
+        self.covariance -= gain[:, None] * projected
+
+    def heading_gain(self, variance: float) -> float:
+        """Return equation 10's gain of the yaw for a compass of this ``variance`` and its bias."""
+        together = float(self.covariance[YAW, YAW] + self.covariance[YAW, COMPASS_BIAS])
+        return together / (self.spread(YAW) + variance)
 
     def update_heading(self, difference: float, variance: float, gain: float) -> None:
         """Let the yaw alone follow the compass by ``gain``; the covariance knows of its bias."""
-        row = np.zeros(SIZE)
-        row[YAW] = row[COMPASS_BIAS] = 1.0
-        projected = gain * (self.covariance @ row)
+        projected = gain * (self.covariance @ COMPASS)
         self.state[YAW] += gain * difference
         self.covariance[YAW] -= projected
         self.covariance[:, YAW] -= projected
-        self.covariance[YAW, YAW] += gain * float(row @ projected) + gain**2 * variance
+        self.covariance[YAW, YAW] += gain * float(COMPASS @ projected) + gain**2 * variance
 
     def spread(self, index: int) -> float:
         """Return the variance with which a measurement of the state is predicted."""

@@ -6,7 +6,7 @@ import cmath
 
 import numpy as np
 
-from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.compounding import wrap_angle
 from msss_graphslam.core.types import Array, Odometry
 
 __all__ = ["OnlinePose"]
@@ -41,7 +41,7 @@ class OnlinePose:
         position = self._position + cmath.rect(ahead, self._yaw) * velocity
         pose = odometry.pose.copy()
         pose[0], pose[1] = position.real, position.imag
-        pose[5] = wrap(self._yaw + ahead * (odometry.twist[5] + self._turn))
+        pose[5] = wrap_angle(self._yaw + ahead * (float(odometry.twist[5]) + self._turn))
         return pose
 
     def _advance(self, odometry: Odometry) -> None:

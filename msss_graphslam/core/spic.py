@@ -7,7 +7,7 @@ motion estimation in unstructured environments, IROS 2005.
 """
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import wrap
@@ -72,7 +72,7 @@ def _iterate(
     initial_covariance: Array,
     config: Matching,
 ) -> MatchResult:
-    gate = float(chi2.ppf(config.compatibility, 2))
+    gate = float(chdtri(2, 1.0 - config.compatibility))
     pose = np.array(initial, dtype=float)
     iteration, converged = 0, False
     while iteration < config.iterations and not converged:
@@ -92,7 +92,7 @@ def _iterate(
     figures = {
         "iterations": float(iteration),
         "overlap": float(np.sum(squared <= gate) / len(current.places)),
-        "residual": float(np.sqrt(np.median(squared) / chi2.median(2))),
+        "residual": float(np.sqrt(np.median(squared) / chdtri(2, 0.5))),
         "mean_error_m": float(np.hypot(*pairs.errors.T).mean()),
         "shift": _shift(pose, initial, covariance + initial_covariance),
     }

@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from msss_graphslam.core.types import Array
 
@@ -37,6 +37,6 @@ def consistency(errors: Array, covariances: Array) -> Consistency:
     samples, dimension = errors.shape
     solved = np.linalg.solve(covariances, errors[..., None])[..., 0]
     degrees = samples * dimension
-    low, high = chi2.ppf([0.025, 0.975], degrees) / degrees
+    low, high = chdtri(degrees, [0.975, 0.025]) / degrees
     mean = float(np.sum(errors * solved) / degrees)
     return Consistency(mean, float(low), float(high), samples)

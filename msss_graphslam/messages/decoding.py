@@ -6,6 +6,7 @@ No bytes of a message can make a record with a number that is not finite.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import asin, atan2, copysign, hypot, isfinite, pi, remainder
 from typing import Any
 
@@ -45,7 +46,8 @@ def beam(message: Any) -> Beam:
         raise Refusal("beam_bearing_not_finite")
     if bearing != float(message.angle_max):
         raise Refusal("beam_with_several_bearings")
-    ranges, intensities = _numbers(message.ranges), _numbers(message.intensities)
+    ranges = _bins(_numbers(message.ranges).tobytes())
+    intensities = _numbers(message.intensities)
     _check_profile(ranges, intensities)
     return Beam(stamp_ns, bearing, ranges, intensities)
 
@@ -100,16 +102,26 @@ def placement(message: Any) -> Array:
     return _pose(message.transform.translation, message.transform.rotation, "transform")
 
 
-def _check_profile(ranges: Array, intensities: Array) -> None:
+@lru_cache(maxsize=64)
+def _bins(data: bytes) -> Array:
+    """Return the bins' centres; consecutive beams share one array, which is checked once."""
+    ranges = np.frombuffer(data)
     if ranges.size == 0:
         raise Refusal("beam_without_bins")
-    if ranges.shape != intensities.shape:
-        raise Refusal("beam_lengths_differ")
-    if not (np.isfinite(ranges).all() and np.isfinite(intensities).all()):
+    if not np.isfinite(ranges).all():
         raise Refusal("beam_not_finite")
     if ranges[0] < 0.0 or (np.diff(ranges) <= 0.0).any():
         raise Refusal("beam_ranges_not_increasing")
-    if intensities.min() < 0.0 or intensities.max() > _LARGEST_CODE:
+    return ranges
+
+
+def _check_profile(ranges: Array, intensities: Array) -> None:
+    if ranges.shape != intensities.shape:
+        raise Refusal("beam_lengths_differ")
+    lowest, highest = intensities.min(), intensities.max()  # of a NaN among them: NaN
+    if not (isfinite(lowest) and isfinite(highest)):
+        raise Refusal("beam_not_finite")
+    if lowest < 0.0 or highest > _LARGEST_CODE:
         raise Refusal("beam_intensity_out_of_range")
 
 

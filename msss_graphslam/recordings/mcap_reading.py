@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every whole message of an mcap file, damaged or not."""
 
-import heapq
+from bisect import bisect_left
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from io import BytesIO
-from itertools import count
+from operator import attrgetter
 from pathlib import Path
 from struct import Struct
 from typing import BinaryIO, NamedTuple
@@ -29,6 +29,7 @@ from msss_graphslam.recordings.mcap_records import (
 __all__ = ["McapContent", "RawMessage", "merge"]
 
 _MESSAGE_HEAD = Struct("<HIQQ")
+_log_time = attrgetter("log_ns")
 
 
 class RawMessage(NamedTuple):
@@ -48,6 +49,7 @@ class _Block(NamedTuple):
     record: Record
     first_ns: int
     last_ns: int
+    channel_ids: frozenset[int]
 
 
 class McapContent:
@@ -78,8 +80,18 @@ class McapContent:
         """Whether there is nothing of an mcap file in it."""
         return not (self._has_header or self.blocks or self.damage.broken_chunks)
 
-    def messages(self, block: _Block, stream: BinaryIO) -> list[RawMessage]:
-        """Return the messages of one block, without those of unknown channels."""
+    def channels_of(self, topics: Collection[str] | None) -> dict[int, Channel]:
+        """Return the channels of the topics (all without ``topics``) by id."""
+        return {
+            number: channel
+            for number, channel in self.channels.items()
+            if topics is None or channel.topic in topics
+        }
+
+    def messages(
+        self, block: _Block, stream: BinaryIO, channels: Mapping[int, Channel]
+    ) -> list[RawMessage]:
+        """Return the messages of one block in these channels, by id."""
         data = load(stream, block.record)
         found = []
         for record in inner_records(block.record, data):
@@ -88,7 +100,7 @@ class McapContent:
             channel_id, sequence, log_ns, publish_ns = _MESSAGE_HEAD.unpack_from(
                 data, record.start
             )
-            channel = self.channels.get(channel_id)
+            channel = channels.get(channel_id)
             if channel is not None:
                 body = data[record.start + _MESSAGE_HEAD.size : record.end]
                 schema = self.schemas.get(channel.schema_id)
@@ -118,7 +130,7 @@ class McapContent:
                 self._define(record.opcode, data[record.start : record.end])
         if times:
             self.counts.update(counts)
-            self.blocks.append(_Block(outer, min(times), max(times)))
+            self.blocks.append(_Block(outer, min(times), max(times), frozenset(counts)))
 
     def _define(self, opcode: int, content: bytes) -> None:
         stream = ReadDataStream(BytesIO(content))
@@ -144,24 +156,38 @@ class McapContent:
             self.damage.lost_messages = None
 
 
-def merge(contents: Iterable[McapContent]) -> Iterator[RawMessage]:
+def merge(
+    contents: Iterable[McapContent],
+    topics: Collection[str] | None = None,
+    span_ns: range | None = None,
+) -> Iterator[RawMessage]:
     """Yield the messages of several files in the order of their log times.
 
-    No more than the blocks that overlap in time are held in memory.
+    Only those of the topics and of the span, where these are given. No more than the blocks that
+    overlap in time are held in memory.
     """
-    pending: list[tuple[int, int, RawMessage]] = []
-    order = count()
+    pending: list[RawMessage] = []
     with ExitStack() as files:
-        blocks = [
-            (block, content, stream)
+        wanted = [
+            (block, content, stream, channels)
             for content in contents
             for stream in [files.enter_context(content.path.open("rb"))]
+            for channels in [content.channels_of(topics)]
             for block in content.blocks
+            if not block.channel_ids.isdisjoint(channels) and _overlaps(block, span_ns)
         ]
-        for block, content, stream in sorted(blocks, key=lambda entry: entry[0].first_ns):
-            while pending and pending[0][0] < block.first_ns:
-                yield heapq.heappop(pending)[2]
-            for message in content.messages(block, stream):
-                heapq.heappush(pending, (message.log_ns, next(order), message))
-        while pending:
-            yield heapq.heappop(pending)[2]
+        for block, content, stream, channels in sorted(
+            wanted, key=lambda entry: entry[0].first_ns
+        ):
+            ready = bisect_left(pending, block.first_ns, key=_log_time)
+            yield from pending[:ready]
+            found = content.messages(block, stream, channels)
+            if span_ns is not None:
+                found = [message for message in found if message.log_ns in span_ns]
+            # A stable sort: messages of the same time stay in the order of the file.
+            pending = sorted(pending[ready:] + found, key=_log_time)
+        yield from pending
+
+
+def _overlaps(block: _Block, span_ns: range | None) -> bool:
+    return span_ns is None or (block.first_ns < span_ns.stop and block.last_ns >= span_ns.start)

@@ -77,11 +77,11 @@ class Recording:
         self.end_ns = max((block.last_ns for block in blocks), default=0)
         self._contents = contents
 
-    def messages(self, names: Collection[str] | None = None) -> Iterator[RawMessage]:
-        """Yield the messages of the topics (all without ``names``) in the order of log times."""
-        for message in merge(self._contents):
-            if names is None or message.channel.topic in names:
-                yield message
+    def messages(
+        self, names: Collection[str] | None = None, span_ns: range | None = None
+    ) -> Iterator[RawMessage]:
+        """Return the messages in the order of log times: of all topics and times, or of these."""
+        return merge(self._contents, names, span_ns)
 
     def find(self, topic: Topic) -> RecordedTopic | None:
         """Return the recorded topic of that name, under any namespace.
@@ -128,11 +128,11 @@ class Recording:
         """Yield the beams logged between two times or shortly after, without counting refusals."""
         source = Source(topics.SONAR_PING, decoding.beam)
         recorded = self.find(topics.SONAR_PING)
-        for raw in self.messages([recorded.name] if recorded else []):
-            if start_ns <= raw.log_ns <= end_ns + _LOG_DELAY_NS:
-                beam = source.record_of(raw, Counter())
-                if beam is not None:
-                    yield beam
+        span_ns = range(start_ns, end_ns + _LOG_DELAY_NS + 1)
+        for raw in self.messages([recorded.name] if recorded else [], span_ns):
+            beam = source.record_of(raw, Counter())
+            if beam is not None:
+                yield beam
 
     def mounting(self) -> Mounting | None:
         """Return where the head sits, if the bag's static transforms say so."""

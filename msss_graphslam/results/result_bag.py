@@ -24,6 +24,7 @@ from msss_graphslam.results.record import RunRecord
 __all__ = ["write_result_bag"]
 
 _SHORTEST_PERIOD_NS = 200_000_000
+_PLANAR = [0, 1, 5]
 
 _Message = tuple[int, str, Any]
 """Stamp [ns], topic, message."""
@@ -57,6 +58,7 @@ def _moving(estimate: Estimate) -> Iterator[_Message]:
     """Yield dead reckoning, the corrected pose where its covariance is known, and both frames."""
     covariances = _beam_covariances(estimate.keyframes)
     twists = _twists(estimate.dead_reckoning)
+    odom_in_map = _odom_in_map(estimate.trajectory.poses, estimate.dead_reckoning.poses)
     for row in _thinned_rows(estimate.trajectory.stamps_ns):
         stamp = int(estimate.trajectory.stamps_ns[row])
         corrected = estimate.trajectory.poses[row]
@@ -66,7 +68,7 @@ def _moving(estimate: Estimate) -> Iterator[_Message]:
         if stamp in covariances:
             yield stamp, "/pose", encoding.pose(make, stamp, corrected, covariances[stamp])
         transforms = [
-            encoding.transform(make, stamp, _odom_in_map(corrected, reckoned), "map", "odom"),
+            encoding.transform(make, stamp, odom_in_map[row], "map", "odom"),
             encoding.transform(make, stamp, reckoned, "odom", "base_link"),
         ]
         yield stamp, "/tf", encoding.tf_message(make, transforms)
@@ -101,8 +103,11 @@ def _beam_covariances(keyframes: tuple[Keyframe, ...]) -> dict[int, Array]:
 
 
 def _odom_in_map(corrected: Array, reckoned: Array) -> Array:
-    planar = compose(corrected[[0, 1, 5]], inverse(reckoned[[0, 1, 5]]))
-    return np.array([planar[0], planar[1], corrected[2] - reckoned[2], 0.0, 0.0, planar[2]])
+    """Return what carries each dead-reckoned pose (n, 6) over to the corrected one (n, 6)."""
+    poses = np.zeros(corrected.shape)
+    poses[:, _PLANAR] = compose(corrected[:, _PLANAR], inverse(reckoned[:, _PLANAR]))
+    poses[:, 2] = corrected[:, 2] - reckoned[:, 2]
+    return poses
 
 
 def _twists(trajectory: Trajectory) -> Array:
@@ -112,7 +117,7 @@ def _twists(trajectory: Trajectory) -> Array:
         seconds = np.diff(trajectory.stamps_ns)[:, None] * 1e-9
         steps = compose(inverse(planar[:-1]), planar[1:])
         steps[:, 2] = wrap(steps[:, 2])
-        twists[1:, [0, 1, 5]] = steps / seconds
+        twists[1:, _PLANAR] = steps / seconds
     return twists
 
 

@@ -14,6 +14,7 @@ from msss_graphslam.results.atomic import write_text
 __all__ = ["format_trajectory", "read_trajectory", "write_trajectory"]
 
 _NANOSECONDS = 1_000_000_000
+_LINE = " ".join(["%.9f"] * 7)
 
 
 def write_trajectory(path: Path, trajectory: Trajectory) -> None:
@@ -23,11 +24,13 @@ def write_trajectory(path: Path, trajectory: Trajectory) -> None:
 
 def format_trajectory(trajectory: Trajectory) -> str:
     """Return the file's text, stamps to 1e-9 s, poses to 1e-9: equal poses make equal bytes."""
+    if not len(trajectory.stamps_ns):
+        return ""  # SciPy 1.11, Ubuntu 24.04's, takes no empty set of rotations.
     quaternions = Rotation.from_euler("ZYX", trajectory.poses[:, :2:-1]).as_quat(canonical=True)
     # Adding zero turns -0.0 into 0.0.
     rows = np.round(np.hstack([trajectory.poses[:, :3], quaternions]), 9) + 0.0
     return "".join(
-        f"{_seconds(stamp)} {' '.join(f'{value:.9f}' for value in row)}\n"
+        f"{_seconds(stamp)} {_LINE % tuple(row)}\n"
         for stamp, row in zip(trajectory.stamps_ns.tolist(), rows.tolist(), strict=True)
     )
 

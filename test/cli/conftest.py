@@ -1,36 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""A small simulated bag, whole and damaged."""
+"""A damaged bag."""
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from msss_graphslam.simulation.path import Path as Lap
-from msss_graphslam.simulation.recording import SimulatedBag, simulate
-from msss_graphslam.simulation.settings import SonarSettings
-from msss_graphslam.simulation.worlds import World
-
-
-@pytest.fixture(scope="session")
-def tank(tmp_path_factory: pytest.TempPathFactory) -> SimulatedBag:
-    """A minute in a tank of 9 m x 7 m with a bay, a turn every 4 s."""
-    x = [-4.5, 4.5, 4.5, 3.0, 3.0, -4.5]
-    y = [-3.5, -3.5, 1.5, 1.5, 3.5, 3.5]
-    outline = np.column_stack([x, y])
-    angles = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
-    circle = np.column_stack([np.cos(angles), np.sin(angles)])
-    world = World(
-        name="tank",
-        outlines=(outline - circle[0],),
-        path=Lap.through(circle - circle[0]),
-        laps=1,
-        depth=1.0,
-        rough=False,
-        sonar=SonarSettings(10.0, 100, np.radians(3.6), 0.04),
-    )
-    return simulate(world, 1, tmp_path_factory.mktemp("tank"))
+from msss_graphslam.simulation.recording import SimulatedBag
 
 
 @pytest.fixture

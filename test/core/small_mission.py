@@ -2,16 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """A short simulated mission in the pond, as the measurements that the pipeline takes."""
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.pipeline import Pipeline
+from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import (
     Array,
     Beam,
     BodyVelocity,
     Depth,
+    Estimate,
     Inertial,
     Measurement,
     Stamps,
@@ -56,7 +62,47 @@ def recorded(
     )
     stamps = _stamps(mission.sonar.times)
     measurements = sorted(_measurements(mission), key=lambda entry: entry.stamp_ns)
-    return Recorded(tuple(measurements), Trajectory(stamps, mission.motion.at(mission.sonar.times)))
+    return Recorded(
+        tuple(measurements), Trajectory(stamps, mission.motion.at(mission.sonar.times))
+    )
+
+
+def until(seconds: float) -> list[Measurement]:
+    """The first part of the mission."""
+    end = LAUNCH_NS + round(seconds * 1e9)
+    return [entry for entry in recorded().measurements if entry.stamp_ns < end]
+
+
+def seconds_of(entry: Measurement) -> float:
+    """Since launch."""
+    return (entry.stamp_ns - LAUNCH_NS) * 1e-9
+
+
+def run(
+    measurements: Iterable[Measurement],
+    estimator: str = "full",
+    configuration: Configuration | None = None,
+) -> tuple[Estimate, Counter[str]]:
+    """The estimate of the measurements in their order of arrival, and what was refused."""
+    refused: Counter[str] = Counter()
+    pipeline = Pipeline(configuration or Configuration(), ESTIMATORS[estimator], refused)
+    for measurement in measurements:
+        pipeline.process(measurement)
+    return pipeline.finish(), refused
+
+
+@cache
+def estimated(estimator: str, seed: int = 1) -> Estimate:
+    """The estimate of a whole ``recorded`` mission."""
+    return run(recorded(seed).measurements, estimator)[0]
+
+
+def position_errors(estimate: Trajectory, truth: Trajectory) -> Array:
+    """The distances (n,) [m] at every pose of the estimate, both beginning at the origin."""
+    at = np.searchsorted(truth.stamps_ns, estimate.stamps_ns)
+    true = truth.planar[at, :2]
+    away = (estimate.planar[:, :2] - estimate.planar[0, :2]) - (true - true[0])
+    return np.asarray(np.linalg.norm(away, axis=1))
 
 
 def _small_pond(lap: float) -> World:

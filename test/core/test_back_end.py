@@ -251,7 +251,7 @@ def wrong_loop(config: Config) -> float:
     """The farthest that one wrong loop closure moves a keyframe of a good graph [m]."""
     truth, steps = ring(8)
     good, spoilt = fed(steps, config), fed(steps, config)
-    wrong = between(truth[1], truth[9]) + [3.0, -2.0, 0.5]
+    wrong = between(truth[1], truth[9]) + np.array([3.0, -2.0, 0.5])
     spoilt.update([loop(1, 9, wrong, np.diag([0.05, 0.05, 0.01]) ** 2)])
     return float(np.linalg.norm((spoilt.poses() - good.poses())[:, :2], axis=1).max())
 

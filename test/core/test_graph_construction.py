@@ -71,24 +71,22 @@ def test_the_consecutive_edge_is_what_the_matcher_says() -> None:
 
 def test_every_accepted_candidate_is_matched_from_its_place() -> None:
     known, matcher = nodes(), RecordingMatcher()
-    edges = loop_constraints(known, POSES, [Candidate(0, 1.5, 0.2), Candidate(1, 2.5, 0.3)], matcher)
+    edges = loop_constraints(
+        known, POSES, [Candidate(0, 1.5, 0.2), Candidate(1, 2.5, 0.3)], matcher
+    )
     assert [(edge.first, edge.second) for edge in edges] == [(0, 3), (1, 3)]
     assert all(edge.kind is ConstraintKind.LOOP and edge.accepted for edge in edges)
     for number, (reference, current, initial, spread) in enumerate(matcher.asked):
         assert (reference, current) == (f"prepared {number}", "prepared 3")
         np.testing.assert_allclose(initial, between(POSES[number], POSES[3]))
-        expected = between_covariance(
-            POSES[number], (number + 1) * SPREAD, POSES[3], 4.0 * SPREAD
-        )
+        expected = between_covariance(POSES[number], (number + 1) * SPREAD, POSES[3], 4.0 * SPREAD)
         np.testing.assert_allclose(spread, expected)
     assert edges[0].figures == {"mahalanobis": 1.5, "shape_distance": 0.2, "overlap": 0.8}
 
 
 def test_a_refused_candidate_is_kept_and_not_matched() -> None:
     matcher = RecordingMatcher()
-    (edge,) = loop_constraints(
-        nodes(), POSES, [Candidate(1, 2.0, 0.9, "shape_differs")], matcher
-    )
+    (edge,) = loop_constraints(nodes(), POSES, [Candidate(1, 2.0, 0.9, "shape_differs")], matcher)
     assert edge.refusal == "shape_differs"
     assert matcher.asked == []
     np.testing.assert_allclose(edge.relative_pose, between(POSES[1], POSES[3]))

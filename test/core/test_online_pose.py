@@ -83,9 +83,7 @@ def test_an_anchor_at_its_own_pose_makes_no_step() -> None:
             own = online.at(entry, entry.stamp_ns)
     anchored.anchor(own[[0, 1, 5]], entries[9].planar, entries[9].stamp_ns, OFFSET)
     for entry in entries[10:]:
-        assert_same(
-            anchored.at(entry, entry.stamp_ns), plain.at(entry, entry.stamp_ns)[[0, 1, 5]]
-        )
+        assert_same(anchored.at(entry, entry.stamp_ns), plain.at(entry, entry.stamp_ns)[[0, 1, 5]])
 
 
 def test_looks_ahead_by_the_twist() -> None:

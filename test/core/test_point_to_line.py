@@ -76,7 +76,8 @@ def test_the_errors_are_as_large_as_the_covariance_says() -> None:
 def test_motion_across_half_a_turn() -> None:
     displacement = np.array([0.3, 0.2, np.pi - 0.01])
     first, second = pair(1, displacement)
-    result = match_lines(first, second, displacement + [0.1, -0.1, 0.03], GUESS, CONFIG)
+    initial = displacement + np.array([0.1, -0.1, 0.03])
+    result = match_lines(first, second, initial, GUESS, CONFIG)
     assert result.accepted
     np.testing.assert_allclose(error_of(result, displacement), 0.0, atol=0.05)
     assert -np.pi < result.relative_pose[2] <= np.pi
@@ -89,7 +90,7 @@ def test_a_corridor_is_known_across_and_not_along(seed: int) -> None:
     first = seen(corridor(), pose, rng)
     second = seen(corridor(), compose(pose, DISPLACEMENT), rng)
     offset = rotation(-pose[2]) @ [0.2, 0.1]
-    initial = DISPLACEMENT + [*offset, 0.03]
+    initial = DISPLACEMENT + np.array([*offset, 0.03])
     result = match_lines(first, second, initial, GUESS, CONFIG)
     along, across = rotation(-pose[2]).T
     position = result.covariance[:2, :2]
@@ -224,14 +225,15 @@ def test_the_overlap_gate_from_both_sides() -> None:
 def test_a_guess_too_far_off_is_noticed() -> None:
     first, second = pair(8)
     certain = np.diag([0.02, 0.02, 0.005]) ** 2
-    result = match_lines(first, second, DISPLACEMENT + [0.2, 0.0, 0.0], certain, CONFIG)
+    initial = DISPLACEMENT + np.array([0.2, 0.0, 0.0])
+    result = match_lines(first, second, initial, certain, CONFIG)
     assert result.refusal == "too_far_from_the_guess"
     assert result.figures["shift"] > CONFIG.shift
 
 
 def test_an_uncertain_guess_widens_the_search() -> None:
     first, second = pair(9)
-    far = DISPLACEMENT + [0.9, -0.6, 0.1]
+    far = DISPLACEMENT + np.array([0.9, -0.6, 0.1])
     wide = np.diag([1.0, 1.0, 0.2]) ** 2
     result = match_lines(first, second, far, wide, CONFIG)
     assert result.accepted

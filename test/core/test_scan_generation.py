@@ -154,9 +154,7 @@ def test_laying_out_with_the_same_motion_changes_nothing() -> None:
 def test_laying_out_does_not_depend_on_the_layout_before() -> None:
     scan = room_scan()
     bent = compose(scan.motion, np.array([0.1, 0.2, 0.3]))
-    there_and_back = lay_out(
-        lay_out(scan, bent, np.eye(3)), scan.motion, scan.twist_covariance
-    )
+    there_and_back = lay_out(lay_out(scan, bent, np.eye(3)), scan.motion, scan.twist_covariance)
     np.testing.assert_array_equal(there_and_back.points, scan.points)
     np.testing.assert_array_equal(there_and_back.covariances, scan.covariances)
 
@@ -176,12 +174,13 @@ def test_motion_covariance_equals_a_monte_carlo() -> None:
     motion = between(planar[0], planar)
     deviations = np.array([0.03, 0.01, 0.004])
     ends = np.array(
-        [offset_motion(motion, elapsed, error)[-1] for error in deviations * rng.normal(size=(4000, 3))]
+        [
+            offset_motion(motion, elapsed, error)[-1]
+            for error in deviations * rng.normal(size=(4000, 3))
+        ]
     )
     computed = motion_covariances(motion, elapsed, np.diag(deviations**2))
-    np.testing.assert_allclose(
-        np.sqrt(np.diag(computed[-1])), np.std(ends, axis=0), rtol=0.05
-    )
+    np.testing.assert_allclose(np.sqrt(np.diag(computed[-1])), np.std(ends, axis=0), rtol=0.05)
     correlation = computed[-1] / np.sqrt(np.outer(np.diag(computed[-1]), np.diag(computed[-1])))
     np.testing.assert_allclose(correlation, np.corrcoef(ends.T), atol=0.06)
     np.testing.assert_array_equal(computed[0], np.zeros((3, 3)))
@@ -197,9 +196,7 @@ def test_point_covariance_equals_a_monte_carlo() -> None:
             for error in rng.multivariate_normal(np.zeros(3), scan.twist_covariance, draws)
         ]
     )
-    body = rng.multivariate_normal(
-        scan.body_points[number], scan.body_covariances[number], draws
-    )
+    body = rng.multivariate_normal(scan.body_points[number], scan.body_covariances[number], draws)
     sampled = np.cov(transform_points(motions, body).T)
     np.testing.assert_allclose(scan.covariances[number], sampled, rtol=0.1, atol=2e-3)
 

@@ -135,6 +135,17 @@ def test_repeated_bearings_do_not_end_a_turn() -> None:
     assert not refused
 
 
+@pytest.mark.parametrize(("later_ns", "refused_beams"), [(1, 0), (0, 1), (-1, 1)])
+def test_a_beam_must_be_newer_than_the_last(later_ns: int, refused_beams: int) -> None:
+    """Even where the head reverses, or a turn would last no time at all."""
+    first, second = readings(np.array([0.0, 0.1]))
+    (third,) = shifted(readings(np.array([0.05])), second.stamp_ns + later_ns)
+    turns, last, refused = detect([first, second, third])
+    assert refused["beam_not_newer"] == refused_beams
+    assert len(turns) == 1 - refused_beams
+    assert len(all_readings(turns, last)) == 3 - refused_beams
+
+
 @given(st.sets(st.integers(1, 239), max_size=60), st.sampled_from([1.0, -1.0]))
 @settings(max_examples=50, deadline=None)
 def test_lost_beams_do_not_shift_the_turns(lost: set[int], sense: float) -> None:
@@ -160,6 +171,8 @@ def test_no_beam_is_lost_or_doubled(beams: list[tuple[float, int]]) -> None:
     ]
     turns, last, refused = detect(entries)
     found = all_readings(turns, last)
-    assert len(found) + refused["beams_in_dropped_turns"] == len(entries)
+    refusals = refused["beams_in_dropped_turns"] + refused["beam_not_newer"]
+    assert len(found) + refusals == len(entries)
+    assert all(turn.readings[-1].stamp_ns < turn.end_ns for turn in turns)
     remaining = iter(entries)
     assert all(any(entry is other for other in remaining) for entry in found)

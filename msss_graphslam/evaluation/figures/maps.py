@@ -45,7 +45,7 @@ def occupancy(assessment: Assessment) -> Plate | None:
     axes.grid(visible=False)
     axes.set_facecolor(_UNSEEN)
     axes.imshow(
-        np.where(grid.occupancy < 0, -1, grid.occupancy.astype(int)),
+        grid.occupancy,
         cmap=_occupancy_colours(),
         vmin=-1,
         vmax=100,

@@ -53,19 +53,19 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
 
 def orientation(make: Make, angles: Array) -> Any:
     """Return a Quaternion of roll, pitch, yaw (3,) [rad]."""
-    x, y, z, w = quaternion(*(float(angle) for angle in angles))
+    x, y, z, w = quaternion(*angles.tolist())
     return make("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
 
 
 def vector(make: Make, values: Array) -> Any:
     """Return a Vector3 of (3,)."""
-    x, y, z = (float(value) for value in values)
+    x, y, z = values.tolist()
     return make("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
 
 
 def point(make: Make, values: Array) -> Any:
     """Return a Point of (3,) [m]."""
-    x, y, z = (float(value) for value in values)
+    x, y, z = values.tolist()
     return make("geometry_msgs/msg/Point", x=x, y=y, z=z)
 
 
