@@ -35,8 +35,9 @@ Times depend on the machine and on what else it does: compare ratios and shares.
 
 First the paper's basin with real echoes. Then, where loops are closed, the same turns in a lap
 through the marina, before it comes back to its start: once with a short, once with a long past.
-What is too far away to be associated must not cost time. A loop closure that is tried does, and
-`chen2015` tries more after a long past, as its gate widens with the uncertainty of the poses."""
+Association and back end alone see scans that are too far away to be associated; those must cost
+next to nothing. A loop closure that is tried costs scan matching, and `chen2015` tries more after
+a long past, as its gate widens with the uncertainty of the poses."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -72,7 +72,7 @@ def find_echoes(levels: Array, thresholds: Array, drop: float, dynamic_range: fl
     thresholds = np.maximum(thresholds, levels[above].max() - dynamic_range)
     excess = np.zeros(levels.size + 2)
     np.maximum(levels - thresholds + drop, 0.0, out=excess[1:-1])
-    peaks = find_peaks(excess, height=drop, prominence=drop)[0] - 1
+    peaks = find_peaks(excess, prominence=drop)[0] - 1
     if not peaks.size:
         return _NONE
     return _with_edges(levels, peaks, drop)

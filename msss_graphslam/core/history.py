@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from msss_graphslam.config.groups import Scanning
-from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.compounding import wrap, wrap_angle
 from msss_graphslam.core.types import Array, Odometry, Reading, Stamps
 
 __all__ = ["DeadReckoningHistory", "Turn", "TurnDetector"]
@@ -106,7 +106,7 @@ class TurnDetector:
         if reading.stamp_ns <= last.stamp_ns:
             self._refused["beam_not_newer"] += 1
             return None
-        step = float(wrap(reading.bearing - last.bearing))
+        step = wrap_angle(reading.bearing - last.bearing)
         if reading.stamp_ns - last.stamp_ns > self._gap_ns:
             self._drop("turn_dropped_for_a_gap", reading)
             return None

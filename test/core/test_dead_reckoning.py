@@ -97,6 +97,14 @@ def test_without_orientation_the_gyro_turns_from_zero() -> None:
     assert run.last.twist[5] == 0.1
 
 
+def test_a_changing_turn_rate_is_integrated_between_the_samples() -> None:
+    samples = [
+        Inertial(nanoseconds(time), None, np.array([0.0, 0.0, 0.02 * time]))
+        for time in times(0.0, 10.0)
+    ]
+    assert Run().feed(samples).last.pose[5] == pytest.approx(1.0, abs=1e-9)
+
+
 def test_without_rates_the_heading_follows_the_compass() -> None:
     samples = [Inertial(nanoseconds(time), heading(0.05 * time), None) for time in times(0, 40.0)]
     run = Run().feed(samples)
@@ -162,6 +170,7 @@ def test_alignment_averages_the_first_second_and_knows_how_well() -> None:
         yaws = np.pi + noise * rng.normal(size=26)
         run = Run().feed([imu(PERIOD * number, yaw) for number, yaw in enumerate(yaws)])
         first.append(float(wrap(run.odometry[0].pose[5] - np.pi)))
+    assert run.odometry[0].covariance[5, 5] == pytest.approx(noise**2 / 26.0)
     assert np.std(first) == pytest.approx(noise / np.sqrt(26.0), rel=0.15)
     assert np.mean(first) == pytest.approx(0.0, abs=3.0 * noise / np.sqrt(26.0 * 200.0))
 

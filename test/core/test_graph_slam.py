@@ -124,6 +124,14 @@ def test_matches_and_the_odometry_that_learns_from_them_beat_dead_reckoning() ->
     assert edge_errors(constraints, ConstraintKind.LOOP).max() < 0.2
 
 
+def test_loops_are_looked_for_from_the_matched_pose() -> None:
+    front_end = slam_of(FULL, 5).front_end
+    consecutive = front_end.add_scan(scans()[5])[1]
+    assert consecutive.accepted
+    expected = compose(front_end.poses[-2], consecutive.relative_pose)
+    np.testing.assert_allclose(front_end.poses[-1], expected)
+
+
 def test_loops_join_the_newest_with_earlier_ones() -> None:
     slam = slam_of(FULL)
     loops = [entry for entry in slam.constraints if entry.kind is ConstraintKind.LOOP]

@@ -172,6 +172,31 @@ def test_scans_without_any_line_are_refused_and_finite() -> None:
     assert np.isfinite(result.covariance).all()
 
 
+def wall(y: float) -> LineFeatures:
+    """A wall along x as it is seen from the origin."""
+    x = np.arange(-4.0, 4.0, 0.1)
+    covariances = np.tile(1e-4 * np.eye(2), (80, 1, 1))
+    lines = line_features(np.column_stack([x, np.full(80, y)]), covariances)
+    assert lines is not None
+    return lines
+
+
+def test_a_wall_has_two_sides() -> None:
+    """One 0.1 m thick, seen from 1 m before it and from 1.9 m behind it."""
+    before, behind = wall(1.0), wall(-1.9)
+    result = match_lines(before, behind, np.array([0.0, 3.0, 0.0]), GUESS, CONFIG)
+    assert result.figures["overlap"] == 0.0
+    same_side = match_lines(before, wall(1.1), np.zeros(3), GUESS, CONFIG)
+    assert same_side.figures["overlap"] == 1.0
+
+
+def test_points_without_a_line_are_nothing_to_pair_with() -> None:
+    first, second = wall(2.0), wall(2.0)
+    half = replace(first, flat=np.arange(80) < 40)
+    result = match_lines(half, second, np.zeros(3), GUESS, CONFIG)
+    assert result.figures["overlap"] == pytest.approx(0.5, abs=0.02)
+
+
 def test_scans_of_different_places_are_refused() -> None:
     rng = np.random.default_rng(6)
     small, large = basin(rng, radius=5.0), basin(rng, radius=12.0)
