@@ -67,6 +67,7 @@ class BeamSegmenter:
         self._ranges = ranges.copy()
         self._bins = np.arange(ranges.size)
         self._bin_size = float(np.median(np.diff(ranges)))
+        self._smallest_variance = self._bin_size**2 / 12.0 + self._config.surface_roughness**2
         self._kernel = smoothing_kernel(self._config.echo_length, self._bin_size, ranges.size)
         self._coverage = np.convolve(np.ones(ranges.size), self._kernel, "same")
         self._floor = NoiseFloor(ranges.size)
@@ -103,8 +104,7 @@ class BeamSegmenter:
         """
         half_length = 0.5 * (echoes.trailing - echoes.leading) * self._bin_size
         jitter = half_length * self._config.speckle / self._config.echo_drop
-        relief = self._config.surface_roughness
-        return self._bin_size**2 / 12.0 + relief**2 + 0.25 * jitter**2
+        return self._smallest_variance + 0.25 * jitter**2
 
 
 def _is_audible(beam: Beam) -> bool:

@@ -180,11 +180,13 @@ class DeadReckoning:
 
     def _yaw_rate_variance(self) -> float:
         config = self._config
-        if self._rates is None:
-            compass = self._recent(self._compass_ns, self._stamp_ns)
-            noise = config.compass_noise**2 if compass else np.inf
-            return min(config.turn_rate_noise**2 / TURN_S, 2.0 * noise / TURN_S**2)
-        return config.gyro_noise**2 / TURN_S + config.gyro_bias**2
+        if self._rates is not None:
+            return config.gyro_noise**2 / TURN_S + config.gyro_bias**2
+        turned = config.turn_rate_noise**2 / TURN_S
+        if not self._recent(self._compass_ns, self._stamp_ns):
+            return turned
+        drift = 2.0 * config.compass_drift**2 * TURN_S / config.compass_correlation_time
+        return min(turned, (2.0 * config.compass_noise**2 + drift) / TURN_S**2)
 
 
 def _align(pending: list[Measurement], noise: float) -> tuple[Array, float]:

@@ -140,7 +140,7 @@ class FrontEnd:
             self._learn(constraint)
             before = constraint.relative_pose
             constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
-            change = np.abs(constraint.relative_pose - before)
+            change = np.abs(between(before, constraint.relative_pose))
             if max(change[0], change[1]) < SETTLED and change[2] < SETTLED_ANGLE:
                 break
         return constraint

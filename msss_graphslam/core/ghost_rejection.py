@@ -71,9 +71,9 @@ def reject_ghosts(readings: Sequence[Reading], config: Segmentation) -> list[Rea
 
 def _table(rows: Sequence[Array]) -> Array:
     """Return the rows as one (n, k) array, filled up with NaN."""
-    table = np.full((len(rows), max(row.size for row in rows)), np.nan)
-    for filled, row in zip(table, rows, strict=True):
-        filled[: row.size] = row
+    sizes = np.array([row.size for row in rows])
+    table = np.full((len(rows), sizes.max()), np.nan)
+    table[np.arange(sizes.max()) < sizes[:, None]] = np.concatenate(rows)
     return table
 
 
@@ -125,7 +125,8 @@ def _strongest_at_range(echoes: _Echoes, window: float) -> Array:
     begin = np.searchsorted(ranges, ranges - window)
     end = np.searchsorted(ranges, ranges + window, side="right")
     strongest = np.full(echoes.ranges.size, np.nan)
-    strongest[order] = [levels[i:j].max() for i, j in zip(begin, end, strict=True)]
+    windows = np.column_stack([begin, end]).ravel()  # every second one lies between two windows
+    strongest[order] = np.maximum.reduceat(np.append(levels, -np.inf), windows)[::2]
     return strongest.reshape(echoes.ranges.shape)
 
 

@@ -41,15 +41,16 @@ def transition(
     angles = state[ATTITUDE]
     velocity = assumed_velocity + state[VELOCITY_ERROR]
     to_world = rotation_matrix(angles)
+    travelled = interval * to_world
     predicted = state.copy()
-    predicted[POSITION] += interval * to_world @ velocity  # eq. 6
+    predicted[POSITION] += travelled @ velocity  # eq. 6
     predicted[ATTITUDE] += interval * rate_matrix(angles) @ rates  # eq. 6
     predicted[VELOCITY_ERROR] *= decay
     jacobian = IDENTITY.copy()
     jacobian[POSITION, ATTITUDE] = interval * rotation_derivatives(
         to_world, float(angles[2]), velocity
     )
-    jacobian[POSITION, VELOCITY_ERROR] = interval * to_world
+    jacobian[POSITION, VELOCITY_ERROR] = travelled
     jacobian[ATTITUDE, ATTITUDE] += interval * rate_derivatives(angles, rates)
     jacobian[VELOCITY_ERROR, VELOCITY_ERROR] *= decay
     return predicted, jacobian

@@ -48,7 +48,8 @@ class OnlinePose:
         interval = (odometry.stamp_ns - self._stamp_ns) * 1e-9
         if interval <= 0.0:
             return
-        reckoned, yaw = complex(odometry.pose[0], odometry.pose[1]), float(odometry.pose[5])
+        x, y, _, _, _, yaw = odometry.pose.tolist()
+        reckoned = complex(x, y)
         step = (reckoned - self._reckoned) * cmath.rect(1.0, self._yaw - self._reckoned_yaw)
         self._yaw += yaw - self._reckoned_yaw
         self._position += step + cmath.rect(interval, self._yaw) * self._drift

@@ -59,7 +59,7 @@ def inertial(message: Any) -> Inertial:
     if _given(message.orientation_covariance):
         orientation = _angles(message.orientation, "imu")
     if _given(message.angular_velocity_covariance):
-        rates = _finite(_xyz(message.angular_velocity), "imu_not_finite")
+        rates = _xyz(message.angular_velocity, "imu_not_finite")
     if orientation is None and rates is None:
         raise Refusal("imu_without_data")
     return Inertial(stamp_ns, orientation, rates)
@@ -80,11 +80,13 @@ def depth(message: Any, sensors: Sensors) -> Depth:
 def body_velocity(message: Any) -> BodyVelocity:
     """Return the velocity of a geometry_msgs/TwistWithCovarianceStamped."""
     stamp_ns = _stamp(message, "dvl")
-    velocity = _finite(_xyz(message.twist.twist.linear), "dvl_not_finite")
+    velocity = _xyz(message.twist.twist.linear, "dvl_not_finite")
     covariance = _numbers(message.twist.covariance)
     if covariance.shape != (36,):
         raise Refusal("dvl_covariance_size")
-    covariance = _finite(covariance.reshape(6, 6)[:3, :3], "dvl_not_finite")
+    covariance = covariance.reshape(6, 6)[:3, :3]
+    if not np.isfinite(covariance).all():
+        raise Refusal("dvl_not_finite")
     if not _is_positive_definite(covariance):
         raise Refusal("dvl_covariance_not_positive")
     return BodyVelocity(stamp_ns, velocity, covariance)
@@ -139,7 +141,7 @@ def _given(covariance: Any) -> bool:
 
 
 def _pose(position: Any, orientation: Any, name: str) -> Array:
-    place = _finite(_xyz(position), f"{name}_not_finite")
+    place = _xyz(position, f"{name}_not_finite")
     return np.concatenate([place, _angles(orientation, name)])
 
 
@@ -172,11 +174,8 @@ def _numbers(values: Any) -> Array:
     return np.asarray(values, dtype=np.float64)
 
 
-def _finite(values: Array, reason: str) -> Array:
-    if not np.isfinite(values).all():
+def _xyz(values: Any, reason: str) -> Array:
+    numbers = float(values.x), float(values.y), float(values.z)
+    if not all(map(isfinite, numbers)):
         raise Refusal(reason)
-    return values
-
-
-def _xyz(values: Any) -> Array:
-    return np.array([values.x, values.y, values.z], dtype=np.float64)
+    return np.array(numbers)
