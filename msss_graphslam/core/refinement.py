@@ -22,7 +22,7 @@ from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["Refined", "refine"]
 
-PASSES = 3
+PASSES = 2
 SETTLED = 0.01
 """A scan in which no beam's pose moves farther than this [m] stays as it is."""
 

@@ -29,6 +29,8 @@ def timing(assessment: Assessment) -> Plate | None:
         calls.plot(middle, row, "o", color=ACCENT)
         calls.plot(longest, row, "|", color=MUTED, markersize=9, markeredgewidth=1.5)
     calls.set_xscale("log")
+    calls.xaxis.set_major_formatter("{x:g}")
+    calls.xaxis.set_minor_formatter("")
     calls.set_xlabel("one call [ms]")
     totals.invert_yaxis()
     for axes in (totals, calls):
