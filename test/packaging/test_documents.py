@@ -13,7 +13,14 @@ ROOT = Path(__file__).parents[2]
 PAPER_TO_CODE = (ROOT / "docs" / "paper_to_code.md").read_text(encoding="utf-8")
 PACKAGES = "core|config|evaluation|results|simulation|recordings|messages|offline"
 NAMES = sorted(set(re.findall(rf"`((?:{PACKAGES})\.[\w.]+)`", PAPER_TO_CODE)))
-DOCUMENTS = ["README.md", "CONTRIBUTING.md", "bags/README.md", "docs/paper_to_code.md"]
+DOCUMENTS = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "bags/README.md",
+    "docs/paper_to_code.md",
+    "docs/recordings.md",
+    "docs/reproduction.md",
+]
 
 
 def look_up(name: str) -> object:
