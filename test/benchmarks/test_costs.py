@@ -34,14 +34,16 @@ def test_calls_are_counted() -> None:
 
 @pytest.mark.parametrize(("cpu", "missed"), [(9.99, False), (10.2, True)])
 def test_a_run_too_slow_is_marked(cpu: float, missed: bool) -> None:
-    (row,) = process_table({"full": ProcessCost(cpu, 200.0)}, duration=1000.0).rows
+    (row,) = process_table({"full": ProcessCost(cpu, 20.0, 200.0)}, duration=1000.0).rows
     assert row[2].endswith("(missed)") == missed
+    (row,) = process_table({"full": ProcessCost(5.0, cpu, 200.0)}, duration=1000.0).rows
+    assert row[4].endswith("(missed)") == missed
 
 
 @pytest.mark.parametrize(("peak", "missed"), [(499.0, False), (500.0, True)])
 def test_a_run_too_large_is_marked(peak: float, missed: bool) -> None:
-    (row,) = process_table({"full": ProcessCost(1.0, peak)}, duration=1000.0).rows
-    assert row[3].endswith("(missed)") == missed
+    (row,) = process_table({"full": ProcessCost(1.0, 1.0, peak)}, duration=1000.0).rows
+    assert row[5].endswith("(missed)") == missed
 
 
 def test_growth_compares_the_same_number_of_last_scans() -> None:
