@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One recording through one estimator: the part of a run that writes nothing."""
 
+import shlex
 from collections import Counter
 from collections.abc import Callable
 
@@ -45,6 +46,7 @@ def estimate(
     Raises UserError where the recording has no usable beam.
     """
     watch = Stopwatch()
+    command = _command(recording, recipe, configuration)
     configuration = _with_mounting(recording, configuration)
     refused: Counter[str] = Counter()
     pipeline = Pipeline(configuration, recipe, refused, watch.stage)
@@ -74,9 +76,20 @@ def estimate(
         bag=_bag_info(recording),
         cost=watch.cost,
         version=__version__,
-        command=f"msss run {recording.path.name} --estimator {recipe.name}",
+        command=command,
         example_beams=_example_beams(recording, result),
     )
+
+
+def _command(recording: Recording, recipe: Recipe, configuration: Configuration) -> str:
+    """Return the command that makes these results again, from where the bag lies."""
+    values = configuration.as_dict()
+    words = ["msss", "run", recording.path.name, "--estimator", recipe.name]
+    for info in Configuration.parameters():
+        group, _, key = info.name.partition(".")
+        if values[group][key] != info.default:
+            words += ["--set", f"{info.name}={values[group][key]}"]
+    return shlex.join(words)
 
 
 def _with_mounting(recording: Recording, configuration: Configuration) -> Configuration:

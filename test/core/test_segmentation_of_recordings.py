@@ -52,15 +52,25 @@ def tank_beams():
         yield Beam(stamp, float(np.arctan2(last.y, last.x)), ranges, codes)
 
 
-def test_first_returns_in_a_tank_lie_on_its_walls():
-    readings = segmented(tank_beams())
-    ranges = first_returns(readings)
-    fit = fit_rectangle(np.array([r.bearing for r in readings]), ranges, knots=25)
+@pytest.fixture(scope="module")
+def tank():
+    return segmented(tank_beams())
+
+
+@pytest.mark.parametrize(("knots", "share"), [(1, 0.78), (3, 0.82), (25, 0.85)])
+def test_first_returns_in_a_tank_lie_on_its_walls(tank, knots, share):
+    ranges = first_returns(tank)
+    fit = fit_rectangle(np.array([r.bearing for r in tank]), ranges, knots=knots)
     on_wall = fit.on_wall(ranges, 0.15)
-    across = fit.along_normal(ranges)[on_wall]
-    deviations = np.sqrt([r.variances[0] if r.ranges.size else np.nan for r in readings])
-    assert np.mean(on_wall) >= 0.85
-    assert across.std() <= 0.04
+    assert np.mean(on_wall) >= share
+    assert fit.along_normal(ranges)[on_wall].std() <= 0.04
+
+
+def test_the_stated_variance_is_that_of_the_tanks_walls(tank):
+    ranges = first_returns(tank)
+    fit = fit_rectangle(np.array([r.bearing for r in tank]), ranges, knots=25)
+    across = fit.along_normal(ranges)[fit.on_wall(ranges, 0.15)]
+    deviations = np.sqrt([r.variances[0] if r.ranges.size else np.nan for r in tank])
     assert 0.5 < across.std() / np.nanmedian(deviations) < 2.0
 
 
