@@ -15,7 +15,7 @@ export OMP_NUM_THREADS ?= 1
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/python -m pytest -p xdist.plugin -p _hypothesis_pytestplugin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench reproduce sample-bag defaults clean
+.PHONY: help setup demo test colcon lint bench reproduce sample-bag defaults clean
 
 help: ## show the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -32,11 +32,22 @@ $(STAMP): requirements/base.txt requirements/$(FLAVOUR).txt setup.py setup.cfg p
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
 	@touch $@
 
-demo: $(STAMP) ## run the sample bag and show the result
-	$(BIN)/msss run bags/pond --out demo
+demo: $(STAMP) ## replay the sample bag through all nodes and show the result
+	$(BIN)/msss live --replay bags/pond --rate 0 --out demo
 
 test: $(STAMP) ## pass the tests
 	$(PYTEST) -n auto --dist worksteal $(TESTS)
+
+# With wheels the environment is ROS's prefix too; a sourced ROS has said where it is.
+COLCON := . $(BIN)/activate && AMENT_PREFIX_PATH=$${AMENT_PREFIX_PATH:-$$VIRTUAL_ENV} \
+	PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 colcon --log-base $(VENV)/colcon/log
+COLCON_BASES := --build-base $(VENV)/colcon/build --install-base $(VENV)/colcon/install
+COLCON_TESTS := config messages packaging/test_launch.py packaging/test_views.py
+
+colcon: $(STAMP) ## build as in a ROS workspace, pass the quickest tests there
+	$(COLCON) build $(COLCON_BASES)
+	$(COLCON) test $(COLCON_BASES) --return-code-on-test-failure \
+		--pytest-args -p _hypothesis_pytestplugin $(addprefix test/,$(COLCON_TESTS))
 
 lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/ruff check .

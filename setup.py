@@ -13,6 +13,14 @@ from setuptools import find_packages, setup
 NAME = "msss_graphslam"
 SHARE = f"share/{NAME}"
 ROOT = Path(__file__).parent
+NODES = (
+    "dead_reckoning",
+    "scan_generation",
+    "front_end",
+    "back_end",
+    "bag_replay",
+    "bag_recorder",
+)
 
 
 def version() -> str:
@@ -21,10 +29,10 @@ def version() -> str:
     return next(line for line in lines if line.startswith("__version__")).split('"')[1]
 
 
-def shared(folder: str) -> tuple[str, list[str]]:
+def shared(folder: str, *endings: str) -> tuple[str, list[str]]:
     """Return the files of a folder as they go into the package's share directory."""
-    files = sorted(str(path.relative_to(ROOT)) for path in (ROOT / folder).glob("*.yaml"))
-    return f"{SHARE}/{folder}", files
+    files = (path for ending in endings for path in (ROOT / folder).glob(f"*{ending}"))
+    return f"{SHARE}/{folder}", sorted(str(path.relative_to(ROOT)) for path in files)
 
 
 setup(
@@ -39,7 +47,8 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (SHARE, ["package.xml"]),
-        shared("config"),
+        shared("config", ".yaml", ".rviz", ".json"),
+        shared("launch", ".launch.py"),
     ],
     install_requires=[
         "gtsam",
@@ -55,5 +64,10 @@ setup(
     ],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=False,
-    entry_points={"console_scripts": ["msss = msss_graphslam.cli.main:main"]},
+    entry_points={
+        "console_scripts": [
+            "msss = msss_graphslam.cli.main:main",
+            *(f"{node} = msss_graphslam.nodes.{node}:main" for node in NODES),
+        ]
+    },
 )

@@ -102,9 +102,10 @@ def scan_costs(
             pipeline.process(measurement)
     constraints = pipeline.finish().constraints
     loops = [edge.second for edge in constraints if edge.kind is ConstraintKind.LOOP]
+    keyframes = [scan for scan in watch.scans if "back_end" in scan]
     return ScanCosts(
-        stages={name: np.array([scan[name] for scan in watch.scans]) for name in STAGES},
-        tried=np.bincount(loops, minlength=len(watch.scans)).astype(float),
+        stages={name: np.array([scan[name] for scan in keyframes]) for name in STAGES},
+        tried=np.bincount(loops, minlength=len(keyframes)).astype(float),
     )
 
 

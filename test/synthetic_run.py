@@ -140,21 +140,26 @@ def _scan(generator: np.random.Generator, stamps: np.ndarray, truth: Array, star
     end = int(stamps[index[-1]]) + BEAM_PERIOD_NS
     blank = np.tile(np.diag([0.04, 0.04]) ** 2, (BEAMS_A_TURN, 1, 1))
     return Scan(
-        stamp_ns=int(stamps[start]),
         end_stamp_ns=end,
         beam_stamps_ns=stamps[index],
         motion=np.zeros((BEAMS_A_TURN, 3)),
         motion_covariances=np.tile(np.diag([1e-4, 1e-4, 1e-5]), (BEAMS_A_TURN, 1, 1)),
-        heights=np.full(BEAMS_A_TURN, -1.5),
+        reckoned=_reckoned(np.zeros((BEAMS_A_TURN, 3))),
         beam_index=np.arange(BEAMS_A_TURN),
         body_points=body,
         body_covariances=blank,
         points=body,
         covariances=blank,
-        odometry=np.zeros(3),
-        end_motion=np.zeros(3),
         twist_covariance=np.diag([1e-4, 1e-4, 1e-6]),
     )
+
+
+def _reckoned(planar: Array) -> Array:
+    """The poses (b + 1, 6) of dead reckoning at the beams and at the turn's end."""
+    poses = np.full((len(planar) + 1, 6), 0.0)
+    poses[:, 2] = -1.5
+    poses[:, [0, 1, 5]] = np.vstack([planar, planar[-1]])
+    return poses
 
 
 def _lay_out(scan: Scan, poses: Array, index: int) -> Scan:
@@ -164,8 +169,7 @@ def _lay_out(scan: Scan, poses: Array, index: int) -> Scan:
         scan,
         motion=motion,
         points=transform_points(motion, scan.body_points),
-        odometry=beams[0],
-        end_motion=motion[-1],
+        reckoned=_reckoned(beams),
     )
 
 

@@ -13,6 +13,7 @@ from msss_graphslam.cli.commands import (
     convert,
     evaluate,
     inspect,
+    live,
     run,
     salvage,
     simulate,
@@ -27,6 +28,7 @@ __all__ = ["main"]
 _COMMANDS: dict[str, Command] = {
     "simulate": simulate,
     "run": run,
+    "live": live,
     "compare": compare,
     "evaluate": evaluate,
     "inspect": inspect,

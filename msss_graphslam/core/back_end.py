@@ -41,6 +41,17 @@ class BackEnd:
         self._initial.append(np.array(pose, dtype=float))
         return len(self._initial) - 1
 
+    def take(self, pose: Array, tried: Sequence[Constraint]) -> tuple[Array, Array]:
+        """Take in a keyframe; return all poses (n, 3) and the newest one's covariance (3, 3).
+
+        ``tried`` are the constraints that end at it, of which the accepted ones count; the first
+        keyframe of all has none and is put at its own ``pose`` (3,).
+        """
+        if not self._initial:
+            self.add_keyframe(pose)
+        poses = self.update([entry for entry in tried if entry.accepted])
+        return poses, self.covariance(len(poses) - 1)
+
     def update(self, constraints: Sequence[Constraint]) -> Array:
         """Add accepted constraints and optimise; return all poses (n, 3), equation 4.
 

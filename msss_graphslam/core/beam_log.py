@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses at every beam: dead reckoned, as published at the time, and corrected in the end."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.history import DeadReckoningHistory
 from msss_graphslam.core.motion_feedback import offset_motion
 from msss_graphslam.core.trajectory_correction import Solver, correct_motion
-from msss_graphslam.core.types import Array, Stamps, Trajectory
+from msss_graphslam.core.types import Array, Scan, Stamps, Trajectory
 
 __all__ = ["BeamLog"]
 
@@ -19,26 +19,18 @@ class BeamLog:
     """One row a beam, in the order of their stamps."""
 
     def __init__(self) -> None:
-        self._stamps: list[int] = []
+        self._stamps: list[Stamps] = []
         self._reckoned: list[Array] = []
         self._online: list[tuple[int, Array]] = []
 
-    def add(self, stamp_ns: int, online: Array | None) -> None:
-        """Note a beam and the pose (6,) that a subscriber had at the time, None for no pose."""
-        self._stamps.append(stamp_ns)
-        if online is not None:
-            self._online.append((stamp_ns, online))
+    def add_scan(self, scan: Scan) -> None:
+        """Note the beams of a turn and their dead reckoning."""
+        self._stamps.append(scan.beam_stamps_ns)
+        self._reckoned.append(scan.reckoned[:-1])
 
-    def resolve(self, history: DeadReckoningHistory) -> None:
-        """Look up the dead reckoning of the beams that have come since the last call."""
-        new = np.array(self._stamps[sum(map(len, self._reckoned)) :], dtype=np.int64)
-        if new.size:
-            self._reckoned.append(history.poses_at(new))
-
-    @property
-    def stamps(self) -> Stamps:
-        """The beams' stamps (n,)."""
-        return np.array(self._stamps, dtype=np.int64)
+    def add_online(self, stamp_ns: int, pose: Array) -> None:
+        """Note the pose (6,) that a subscriber had at ``stamp_ns``."""
+        self._online.append((stamp_ns, pose))
 
     @property
     def online(self) -> Trajectory:
@@ -49,20 +41,22 @@ class BeamLog:
     @property
     def dead_reckoning(self) -> Trajectory:
         """The EKF's poses."""
-        return Trajectory(self.stamps, np.concatenate([np.empty((0, 6)), *self._reckoned]))
+        stamps = np.concatenate([np.empty(0, dtype=np.int64), *self._stamps])
+        return Trajectory(stamps, np.concatenate([np.empty((0, 6)), *self._reckoned]))
 
     def corrected(
-        self, keyframe_stamps: Stamps, keyframe_poses: Array, solver: Solver, offset: Array
+        self, scans: Sequence[Scan], keyframe_poses: Array, solver: Solver, twist_error: Array
     ) -> Trajectory:
         """Return the corrected history CDRH of all turns: Section VII, keyframe to keyframe.
 
-        ``keyframe_stamps`` (k,) are stamps of beams, ``keyframe_poses`` (k, 3) their optimised
-        poses in ``map``. Before the first keyframe dead reckoning stands as it is; after the last
-        it goes on with the twist error ``offset`` (3,) taken out.
+        ``scans`` are the keyframes', ``keyframe_poses`` (k, 3) their optimised poses in ``map``,
+        of the first k at least. Before the first keyframe dead reckoning stands as it is; after
+        the last it goes on with ``twist_error`` (3,) taken out.
         """
         reckoned = self.dead_reckoning
-        planar = reckoned.planar.copy()
-        starts = np.searchsorted(self.stamps, keyframe_stamps)
+        stamps, planar = reckoned.stamps_ns, reckoned.planar.copy()
+        first_stamps = [scan.stamp_ns for scan in scans[: len(keyframe_poses)]]
+        starts = np.searchsorted(stamps, np.array(first_stamps, dtype=np.int64))
         for number, (start, stop) in enumerate(pairwise(starts)):
             origin = planar[start]
             planar[start:stop] = compose(
@@ -77,8 +71,8 @@ class BeamLog:
         if len(starts):
             rest = slice(starts[-1], None)
             motion = between(reckoned.planar[starts[-1]], reckoned.planar[rest])
-            elapsed = (self.stamps[rest] - self.stamps[starts[-1]]) * 1e-9
-            planar[rest] = compose(keyframe_poses[-1], offset_motion(motion, elapsed, offset))
+            elapsed = (stamps[rest] - stamps[starts[-1]]) * 1e-9
+            planar[rest] = compose(keyframe_poses[-1], offset_motion(motion, elapsed, twist_error))
         poses = reckoned.poses.copy()
         poses[:, [0, 1, 5]] = planar
-        return Trajectory(self.stamps, poses)
+        return Trajectory(stamps, poses)

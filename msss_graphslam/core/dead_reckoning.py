@@ -4,6 +4,8 @@
 
 import math
 from collections import Counter
+from copy import copy
+from typing import Self
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from msss_graphslam.config.groups import DeadReckoning as DeadReckoningConfig
 from msss_graphslam.core.compounding import wrap, wrap_angle
 from msss_graphslam.core.kalman_filter import (
     ATTITUDE,
+    COMPASS_BIAS,
     VELOCITY_ERROR,
     YAW,
     KalmanFilter,
@@ -68,6 +71,33 @@ class DeadReckoning:
         self._filter = KalmanFilter(self._config, depth, attitude, variance)
         self._stamp_ns = pending[0].stamp_ns
         return [odometry for entry in pending for odometry in self._advance(self._filter, entry)]
+
+    def resume(self, stamp_ns: int, pose: Array) -> None:
+        """Go on from an earlier ``pose`` (6,) in ``odom`` instead of aligning anew.
+
+        What happened since is bridged at the assumed speed; the compass is heard afresh.
+        """
+        config = self._config
+        ekf = KalmanFilter(config, float(pose[2]), pose[3:], config.compass_noise**2)
+        ekf.state[:2] = pose[:2]
+        ekf.covariance[COMPASS_BIAS, COMPASS_BIAS] = config.compass_drift**2
+        self._filter, self._stamp_ns = ekf, stamp_ns
+        self._unsensed = config.sensor_timeout
+
+    def configure(self, config: DeadReckoningConfig) -> None:
+        """Go on with other parameters; what has been estimated stays."""
+        self._config = config
+        if self._filter is not None:
+            self._filter.configure(config)
+
+    def fork(self, refused: Counter[str]) -> Self:
+        """Return one that has taken in the same and goes its own way, counting elsewhere."""
+        clone = copy(self)
+        clone._refused = refused
+        clone._pending = self._pending.copy()
+        clone._refused_since = self._refused_since.copy()
+        clone._filter = self._filter.copy() if self._filter else None
+        return clone
 
     def _advance(self, ekf: KalmanFilter, measurement: Measurement) -> list[Odometry]:
         if measurement.stamp_ns < self._stamp_ns:

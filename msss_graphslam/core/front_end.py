@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The front end of Figure 4: a new scan and the optimised poses in, constraints out."""
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 
 import numpy as np
@@ -18,10 +19,24 @@ from msss_graphslam.core.graph_construction import (
 from msss_graphslam.core.matchers import ScanMatcher
 from msss_graphslam.core.motion_feedback import MotionFeedback, offset_motion
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.scan_generation import lay_out, motion_covariances
+from msss_graphslam.core.scan_correction import correct_scan
+from msss_graphslam.core.scan_generation import (
+    lay_out,
+    motion_covariances,
+    reckoned_motion,
+    reckoned_scan,
+)
 from msss_graphslam.core.shape_matching import shape_descriptor
-from msss_graphslam.core.trajectory_correction import correct_motion
-from msss_graphslam.core.types import Array, Constraint, Scan, Stage
+from msss_graphslam.core.types import (
+    Array,
+    Constraint,
+    GraphPoses,
+    KeyframeReport,
+    MapCorrection,
+    Scan,
+    Stage,
+    TwistError,
+)
 
 __all__ = ["FrontEnd"]
 
@@ -78,12 +93,40 @@ class FrontEnd:
             with self._stage("trajectory_correction"):
                 self._lay_out_reference(between(poses[-2], poses[-1]))
 
-    def pose_ahead(self) -> tuple[Array, Array]:
-        """Return the corrected pose (3,) at the end of the newest scan, and its odometry (3,)."""
+    def correction(self) -> MapCorrection:
+        """Return where the newest scan's end lies by all that is known."""
         scan = self.nodes[-1].first_scan
-        motion = np.vstack([scan.motion, scan.end_motion])
-        ahead = offset_motion(motion, scan.beam_times, self.offset)[-1]
-        return compose(self.poses[-1], ahead), compose(scan.odometry, scan.end_motion)
+        error = self._motion_error(scan)
+        motion = offset_motion(reckoned_motion(scan.reckoned), scan.beam_times, self.offset)
+        ahead = motion_covariances(motion, scan.beam_times, error)[-1]
+        by_first, by_second = compose_jacobians(self.poses[-1], motion[-1])
+        spread = self.nodes[-1].covariance
+        return MapCorrection(
+            stamp_ns=scan.end_stamp_ns,
+            pose=compose(self.poses[-1], motion[-1]),
+            covariance=by_first @ spread @ by_first.T + by_second @ ahead @ by_second.T,
+            twist_error=TwistError(self.offset, error),
+        )
+
+    def report(self, tried: Sequence[Constraint]) -> KeyframeReport:
+        """Return what the back end needs of the newest keyframe, whose constraints were tried."""
+        scan = self.nodes[-1].first_scan
+        return KeyframeReport(
+            number=len(self.nodes) - 1,
+            stamp_ns=scan.stamp_ns,
+            pose=self.poses[-1],
+            odometry=scan.odometry,
+            twist_error=TwistError(self.offset, self._motion_error(scan)),
+            constraints=tuple(tried),
+        )
+
+    def adopt(self, known: GraphPoses) -> None:
+        """Begin with the keyframes of an earlier front end, of which only the poses are left."""
+        self.nodes, self.poses = [], np.empty((0, 3))
+        rows = zip(known.stamps_ns, known.odometry, known.covariances, strict=True)
+        for stamp_ns, odometry, covariance in rows:
+            self._append(_without_echoes(int(stamp_ns), odometry), odometry, covariance)
+        self.poses = known.poses
 
     def _reckon(self, scan: Scan) -> tuple[Array, Array]:
         """Append the new node; return its pose in its predecessor and that pose's covariance."""
@@ -168,14 +211,13 @@ class FrontEnd:
 
     def _lay_out_reference(self, target: Array) -> Array:
         """Section VII for the scan before the newest; return delta X of equation 14."""
-        reference = self.nodes[-2]
-        scan = reference.first_scan
-        end = between(scan.odometry, self.nodes[-1].first_scan.odometry)
-        correction = correct_motion(scan.motion, end, target, self._recipe.solver)
-        reference.scan = lay_out(scan, correction.poses, self._motion_error(scan))
+        reference, scan = self.nodes[-2], self.nodes[-2].first_scan
+        following = self.nodes[-1].first_scan
+        error = self._motion_error(scan)
+        reference.scan, delta = correct_scan(scan, following, target, self._recipe.solver, error)
         if self._matcher is not None:
             reference.prepared = self._matcher.prepare(reference.scan)
-        return correction.delta
+        return delta
 
     def _associate(self) -> list[Candidate]:
         config = self._configuration.association
@@ -200,3 +242,17 @@ class FrontEnd:
         points = self.nodes[-1].scan.body_points
         width = reach * float(np.median(np.hypot(*points.T))) if len(points) else 0.0
         return np.diag([width**2, width**2, np.pi**2])
+
+
+def _without_echoes(stamp_ns: int, odometry: Array) -> Scan:
+    reckoned = np.zeros((2, 6))
+    reckoned[:, [0, 1, 5]] = odometry
+    return reckoned_scan(
+        beam_stamps_ns=np.array([stamp_ns]),
+        end_stamp_ns=stamp_ns,
+        reckoned=reckoned,
+        twist_covariance=np.zeros((3, 3)),
+        beam_index=np.zeros(0, dtype=np.intp),
+        body_points=np.zeros((0, 2)),
+        body_covariances=np.zeros((0, 2, 2)),
+    )

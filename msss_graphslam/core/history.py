@@ -63,6 +63,18 @@ class DeadReckoningHistory:
         """Return the last odometry not after ``stamp_ns`` (the first if there is none)."""
         return self._entries[max(bisect_right(self._stamps, stamp_ns) - 1, 0)]
 
+    def since(self, stamp_ns: int) -> list[Odometry]:
+        """Return the odometry after ``stamp_ns``."""
+        return self._entries[bisect_right(self._stamps, stamp_ns) :]
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def keep_last(self, count: int) -> None:
+        """Drop all but the newest ``count``."""
+        del self._entries[:-count]
+        del self._stamps[:-count]
+
     def forget_before(self, stamp_ns: int) -> None:
         """Drop what no stamp from ``stamp_ns`` on needs."""
         keep = max(bisect_right(self._stamps, stamp_ns) - 1, 0)
@@ -75,13 +87,14 @@ class Turn:
     """RH: the readings of one turn or sweep.
 
     ``end_ns`` is the next one's first stamp, ``swept`` the angle [rad] between the first beam and
-    the last, ``complete`` whether the head finished it.
+    the last, ``complete`` whether the head finished it, ``usable`` whether it makes a scan.
     """
 
     readings: list[Reading]
     end_ns: int
     swept: float
     complete: bool
+    usable: bool = True
 
 
 class TurnDetector:
@@ -92,13 +105,17 @@ class TurnDetector:
 
     def __init__(self, config: Scanning, refused: Counter[str]) -> None:
         self._gap_ns = round(config.gap * 1e9)
+        self._part_turn = config.part_turn
         self._refused = refused
         self._readings: list[Reading] = []
         self._swept = 0.0
         self._direction = 0.0
 
     def add(self, reading: Reading) -> Turn | None:
-        """Take in one reading; return the turn that it ends, of which it is not a part."""
+        """Take in one reading; return the turn that it ends, of which it is not a part.
+
+        A turn that is dropped is returned as not usable.
+        """
         if not self._readings:
             self._start(reading)
             return None
@@ -108,12 +125,10 @@ class TurnDetector:
             return None
         step = wrap_angle(reading.bearing - last.bearing)
         if reading.stamp_ns - last.stamp_ns > self._gap_ns:
-            self._drop("turn_dropped_for_a_gap", reading)
-            return None
+            return self._drop("turn_dropped_for_a_gap", reading)
         reversed_sweep = step * self._direction < 0.0
         if abs(step) > JUMP and not reversed_sweep:
-            self._drop("turn_dropped_for_a_bearing_jump", reading)
-            return None
+            return self._drop("turn_dropped_for_a_bearing_jump", reading)
         if reversed_sweep or self._swept + abs(step) > FULL_TURN - 0.5 * abs(step):
             return self._finish(reading)
         self._readings.append(reading)
@@ -122,20 +137,24 @@ class TurnDetector:
         return None
 
     def finish(self) -> Turn | None:
-        """Return the turn in progress at the end of the recording."""
+        """Return the turn in progress at the end of the recording; usable if it is long enough."""
         readings, self._readings = self._readings, []
         if not readings:
             return None
-        return Turn(readings, readings[-1].stamp_ns, self._swept, complete=False)
+        enough = self._swept >= self._part_turn
+        return Turn(readings, readings[-1].stamp_ns, self._swept, complete=False, usable=enough)
 
     def _start(self, reading: Reading) -> None:
         self._readings = [reading]
         self._swept, self._direction = 0.0, 0.0
 
-    def _drop(self, reason: str, reading: Reading) -> None:
+    def _drop(self, reason: str, reading: Reading) -> Turn:
         self._refused[reason] += 1
         self._refused["beams_in_dropped_turns"] += len(self._readings)
+        last_ns = self._readings[-1].stamp_ns
+        turn = Turn(self._readings, last_ns, self._swept, complete=False, usable=False)
         self._start(reading)
+        return turn
 
     def _finish(self, reading: Reading) -> Turn:
         turn = Turn(self._readings, reading.stamp_ns, self._swept, complete=True)

@@ -3,6 +3,8 @@
 """The extended Kalman filter's state, prediction and updates (Section IV-A)."""
 
 import math
+from copy import copy
+from typing import Self
 
 import numpy as np
 
@@ -62,11 +64,7 @@ class KalmanFilter:
     def __init__(
         self, config: DeadReckoningConfig, z: float, attitude: Array, variance: float
     ) -> None:
-        self._config = config
-        self._assumed_velocity = np.array([config.surge_speed, 0.0, 0.0])
-        self._stationary = (
-            np.array([config.surge_noise, config.sway_noise, config.heave_noise]) ** 2
-        )
+        self._take_over(config)
         self.state = np.zeros(SIZE)
         self.state[Z] = z
         self.state[ATTITUDE] = attitude
@@ -75,6 +73,18 @@ class KalmanFilter:
         variances[ATTITUDE] = variance
         variances[VELOCITY_ERROR] = self._stationary
         self.covariance = np.diag(variances)
+
+    def configure(self, config: DeadReckoningConfig) -> None:
+        """Go on with other parameters; the estimated velocity stays as it is."""
+        before = self._assumed_velocity
+        self._take_over(config)
+        self.state[VELOCITY_ERROR] += before - self._assumed_velocity
+
+    def copy(self) -> Self:
+        """Return a filter in the same state that goes its own way."""
+        clone = copy(self)
+        clone.state, clone.covariance = self.state.copy(), self.covariance.copy()
+        return clone
 
     @property
     def velocity(self) -> Array:
@@ -139,3 +149,10 @@ class KalmanFilter:
     def open(self, index: int, difference: float) -> None:
         """Admit that one state may be wrong by ``difference``."""
         self.covariance[index, index] += difference**2
+
+    def _take_over(self, config: DeadReckoningConfig) -> None:
+        self._config = config
+        self._assumed_velocity = np.array([config.surge_speed, 0.0, 0.0])
+        self._stationary = (
+            np.array([config.surge_noise, config.sway_noise, config.heave_noise]) ** 2
+        )

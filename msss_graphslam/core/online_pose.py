@@ -6,10 +6,19 @@ import cmath
 
 import numpy as np
 
-from msss_graphslam.core.compounding import wrap_angle
-from msss_graphslam.core.types import Array, Odometry
+from msss_graphslam.core.compounding import between, compose_jacobians, wrap_angle
+from msss_graphslam.core.history import DeadReckoningHistory
+from msss_graphslam.core.scan_generation import motion_covariances
+from msss_graphslam.core.types import Array, MapCorrection, Odometry
 
 __all__ = ["OnlinePose"]
+
+_PLANAR = [0, 1, 5]
+_MEMORY = 6000
+"""Odometry kept for a correction that comes late: two minutes of a fast IMU."""
+
+_SHARES = np.linspace(0.0, 1.0, 9)
+"""Where the way since the correction is looked at for its covariance."""
 
 
 class OnlinePose:
@@ -20,6 +29,9 @@ class OnlinePose:
 
     def __init__(self, first: Odometry) -> None:
         """Start where dead reckoning starts: ``map`` and ``odom`` are the same until anchored."""
+        self._recent = DeadReckoningHistory()
+        self._recent.append(first)
+        self._correction: MapCorrection | None = None
         self.anchor(first.planar, first.planar, first.stamp_ns, np.zeros(3))
 
     def anchor(self, pose: Array, odometry: Array, stamp_ns: int, offset: Array) -> None:
@@ -33,8 +45,48 @@ class OnlinePose:
         self._stamp_ns = stamp_ns
         self._drift, self._turn = complex(offset[0], offset[1]), float(offset[2])
 
+    def remember(self, odometry: Odometry) -> None:
+        """Note odometry that a correction may have to catch up with, as ``at`` does itself."""
+        self._recent.append(odometry)
+        if len(self._recent) > 2 * _MEMORY:
+            self._recent.keep_last(_MEMORY)
+
+    def correct(self, correction: MapCorrection) -> None:
+        """Start anew from what a scan has shown, which ended a moment ago, and catch up."""
+        self._correction = correction
+        reckoned = self._recent.poses_at(np.array([correction.stamp_ns]))[0]
+        self.anchor(
+            correction.pose, reckoned[[0, 1, 5]], correction.stamp_ns, correction.twist_error.mean
+        )
+        self._recent.forget_before(correction.stamp_ns)
+        for entry in self._recent.since(correction.stamp_ns):
+            self._advance(entry)
+
+    def covariance(self, odometry: Odometry) -> Array:
+        """Return the covariance (6, 6) of the pose at the odometry's stamp.
+
+        That of dead reckoning until a scan has said more; then the correction's, with the twist
+        error that has acted since.
+        """
+        spread = odometry.covariance.copy()
+        correction = self._correction
+        if correction is None:
+            return spread
+        elapsed = max((odometry.stamp_ns - correction.stamp_ns) * 1e-9, 0.0)
+        now = np.array([self._position.real, self._position.imag, self._yaw])
+        motion = between(correction.pose, now)
+        way, times = _SHARES[:, None] * motion, _SHARES * elapsed
+        drift = motion_covariances(way, times, correction.twist_error.covariance)[-1]
+        by_first, by_second = compose_jacobians(correction.pose, motion)
+        planar = by_first @ correction.covariance @ by_first.T + by_second @ drift @ by_second.T
+        spread[_PLANAR] = 0.0
+        spread[:, [0, 1, 5]] = 0.0
+        spread[np.ix_(_PLANAR, _PLANAR)] = planar
+        return spread
+
     def at(self, odometry: Odometry, stamp_ns: int) -> Array:
         """Return the pose (6,) in ``map`` at ``stamp_ns``, not before the odometry's stamp."""
+        self.remember(odometry)
         self._advance(odometry)
         ahead = (stamp_ns - odometry.stamp_ns) * 1e-9
         velocity = complex(odometry.twist[0], odometry.twist[1]) + self._drift

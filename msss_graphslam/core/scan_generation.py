@@ -3,6 +3,7 @@
 """Scan generation: the readings of a turn in one frame, Algorithm 2."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,41 +13,63 @@ from msss_graphslam.core.compounding import between, rotation, transform_points
 from msss_graphslam.core.history import DeadReckoningHistory, Turn
 from msss_graphslam.core.types import Array, Odometry, Scan
 
-__all__ = ["generate_scan", "lay_out", "motion_covariances"]
+__all__ = [
+    "generate_scan",
+    "lay_out",
+    "motion_covariances",
+    "reckoned_motion",
+    "reckoned_scan",
+]
 
 
 def generate_scan(turn: Turn, history: DeadReckoningHistory, sonar: Sonar) -> Scan:
     """Algorithm 2: the turn's points in the frame {I} of the vehicle at its first beam.
 
-    The history has to cover ``turn.end_ns``. Beams without a range support the motion only.
+    The history has to cover ``turn.end_ns``. Beams without a range support the motion only, and so
+    do all beams of a turn that is not usable.
     """
     stamps = np.array([reading.stamp_ns for reading in turn.readings], dtype=np.int64)
-    poses = history.poses_at(np.append(stamps, turn.end_ns))
-    planar = poses[:, [0, 1, 5]]
-    motion = between(planar[0], planar)
-    error = twist_error(history.at(int(stamps[0])))
-    hits = np.array([i for i, r in enumerate(turn.readings) if r.ranges.size], dtype=np.intp)
+    reckoned = history.poses_at(np.append(stamps, turn.end_ns))
+    hits = np.array(
+        [i for i, r in enumerate(turn.readings) if r.ranges.size and turn.usable], dtype=np.intp
+    )
     ranges = np.array([turn.readings[i].ranges[0] for i in hits])
     variances = np.array([turn.readings[i].variances[0] for i in hits])
     bearings = np.array([turn.readings[i].bearing for i in hits]) + sonar.mount_yaw
-    scan = Scan(
-        stamp_ns=int(stamps[0]),
-        end_stamp_ns=turn.end_ns,
+    return reckoned_scan(
         beam_stamps_ns=stamps,
-        motion=motion[:-1],
-        motion_covariances=np.empty((0, 3, 3)),
-        heights=poses[:-1, 2],
+        end_stamp_ns=turn.end_ns,
+        reckoned=reckoned,
+        twist_covariance=twist_error(history.at(int(stamps[0]))),
         beam_index=hits,
-        body_points=_body_points(ranges, bearings, poses[hits], sonar),
+        body_points=_body_points(ranges, bearings, reckoned[hits], sonar),
         body_covariances=_polar_covariances(ranges, variances, bearings, sonar.beam_width),
-        points=np.empty((0, 2)),
-        covariances=np.empty((0, 2, 2)),
-        odometry=planar[0],
-        end_motion=motion[-1],
-        twist_covariance=error,
         complete=turn.complete,
+        usable=turn.usable,
     )
-    return lay_out(scan, scan.motion, error)
+
+
+def reckoned_scan(
+    *, reckoned: Array, body_points: Array, body_covariances: Array, **measured: Any
+) -> Scan:
+    """Return the scan of what was measured, laid out by dead reckoning; fields as in Scan."""
+    scan = Scan(
+        reckoned=reckoned,
+        body_points=body_points,
+        body_covariances=body_covariances,
+        motion=reckoned_motion(reckoned)[:-1],
+        motion_covariances=np.empty((0, 3, 3)),
+        points=body_points,
+        covariances=body_covariances,
+        **measured,
+    )
+    return lay_out(scan, scan.motion, scan.twist_covariance)
+
+
+def reckoned_motion(reckoned: Array) -> Array:
+    """Return the planar motion (n, 3) since the first of the poses (n, 6)."""
+    planar = reckoned[:, [0, 1, 5]]
+    return between(planar[0], planar)
 
 
 def lay_out(scan: Scan, motion: Array, twist_covariance: Array) -> Scan:

@@ -22,8 +22,11 @@ __all__ = [
     "ConstraintKind",
     "Depth",
     "Estimate",
+    "GraphPoses",
     "Inertial",
     "Keyframe",
+    "KeyframeReport",
+    "MapCorrection",
     "Measurement",
     "Odometry",
     "Reading",
@@ -31,6 +34,7 @@ __all__ = [
     "Stage",
     "Stamps",
     "Trajectory",
+    "TwistError",
 ]
 
 Array = NDArray[np.float64]
@@ -129,37 +133,52 @@ class Reading:
 class Scan:
     """One motion-compensated turn in the frame {I} of the vehicle at its first beam.
 
-    Beams: ``beam_stamps_ns`` (b,), ``motion`` (b, 3) the vehicle's pose at each beam in {I}.
-    Points: ``beam_index`` (n,) the beam each point was measured in, ``body_points`` (n, 2) [m] and
-    ``body_covariances`` (n, 2, 2) [m^2] in the levelled ``base_link`` of that beam; ``points``
-    (n, 2) and ``covariances`` (n, 2, 2) the same in {I}, the motion's uncertainty included.
-    ``motion_covariances`` (b, 3, 3) is that of ``motion``. ``heights`` (b,) is z of the vehicle.
-    ``odometry`` (3,) is the dead reckoning of {I} in ``odom``; ``end_motion`` (3,) the pose in {I}
-    at ``end_stamp_ns``, where the next scan starts. ``twist_covariance`` (3, 3) is that of the
-    motion's slow error: surge, sway [m/s] and yaw rate [rad/s].
+    What was measured: ``beam_stamps_ns`` (b,); ``reckoned`` (b + 1, 6) the dead-reckoned poses in
+    ``odom`` at every beam and at ``end_stamp_ns``, where the next scan starts, and the covariance
+    ``twist_covariance`` (3, 3) of the slow error in it: surge, sway [m/s] and yaw rate [rad/s].
+    ``beam_index`` (n,) is the beam each point was measured in, ``body_points`` (n, 2) [m] and
+    ``body_covariances`` (n, 2, 2) [m^2] stand in the levelled ``base_link`` of that beam.
+    How it is laid out: ``motion`` (b, 3) the vehicle's pose at each beam in {I} with its
+    ``motion_covariances`` (b, 3, 3); ``points`` (n, 2) and ``covariances`` (n, 2, 2) in {I}, the
+    motion's uncertainty included.
+    ``complete`` says whether the head finished the turn. A turn that was dropped is not
+    ``usable``: its beams get poses, but it makes no keyframe.
     """
 
-    stamp_ns: int
-    end_stamp_ns: int
     beam_stamps_ns: Stamps
-    motion: Array
-    motion_covariances: Array
-    heights: Array
+    end_stamp_ns: int
+    reckoned: Array
+    twist_covariance: Array
     beam_index: NDArray[np.intp]
     body_points: Array
     body_covariances: Array
+    motion: Array
+    motion_covariances: Array
     points: Array
     covariances: Array
-    odometry: Array
-    end_motion: Array
-    twist_covariance: Array
     complete: bool = True
+    usable: bool = True
+
+    @property
+    def stamp_ns(self) -> int:
+        """Stamp of the first beam, by which the scan is known."""
+        return int(self.beam_stamps_ns[0])
 
     @property
     def beam_times(self) -> Array:
         """Seconds since the first beam of every beam and of ``end_stamp_ns`` (b + 1,)."""
         stamps = np.append(self.beam_stamps_ns, self.end_stamp_ns)
         return np.asarray((stamps - self.stamp_ns) * 1e-9)
+
+    @property
+    def odometry(self) -> Array:
+        """The dead reckoning (3,) of {I} in ``odom``."""
+        return self.reckoned[0, [0, 1, 5]]
+
+    @property
+    def heights(self) -> Array:
+        """The vehicle's z (b,) at each beam [m]."""
+        return self.reckoned[:-1, 2]
 
 
 class ConstraintKind(StrEnum):
@@ -199,6 +218,57 @@ class Keyframe:
     scan: Scan
     pose: Array
     covariance: Array
+
+
+@dataclass(frozen=True, slots=True)
+class TwistError:
+    """The slow error of dead reckoning's twist that the sonar has shown.
+
+    ``mean`` (3,) has to be added to surge, sway [m/s] and yaw rate [rad/s]; ``covariance`` (3, 3).
+    """
+
+    mean: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, slots=True)
+class MapCorrection:
+    """Where the newest scan's end lies in ``map``: ``pose`` (3,), its ``covariance`` (3, 3)."""
+
+    stamp_ns: int
+    pose: Array
+    covariance: Array
+    twist_error: TwistError
+
+
+@dataclass(frozen=True, slots=True)
+class KeyframeReport:
+    """All that the front end says of a new keyframe: what the back end needs to take it in.
+
+    ``stamp_ns`` is its scan's, ``pose`` (3,) its first estimate in ``map``, ``odometry`` (3,) the
+    dead reckoning of it; ``constraints`` are those tried, all of which end at it.
+    """
+
+    number: int
+    stamp_ns: int
+    pose: Array
+    odometry: Array
+    twist_error: TwistError
+    constraints: tuple[Constraint, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GraphPoses:
+    """The back end's answer: all keyframes as they stand.
+
+    ``stamps_ns`` (n,), ``poses`` (n, 3) in ``map``, ``odometry`` (n, 3) their dead reckoning;
+    ``covariances`` (n, 3, 3) each one's when it was added, which later ones only make smaller.
+    """
+
+    stamps_ns: Stamps
+    poses: Array
+    odometry: Array
+    covariances: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,15 +5,32 @@
 from dataclasses import dataclass
 
 __all__ = [
+    "CONSTRAINTS",
+    "CORRECTION",
     "DVL",
+    "GRAPH_POSES",
     "GROUND_TRUTH",
     "IMU",
     "INPUTS",
+    "KEYFRAMES",
+    "LINKS",
+    "MAP",
+    "MAP_POINTS",
+    "MARKERS",
+    "ODOM",
     "OUTPUTS",
+    "PATH",
+    "POSE",
     "PRESSURE",
+    "RECKONED_PATH",
+    "SCAN",
+    "SCAN_BEAMS",
+    "SETTLED_ODOMETRY",
     "SONAR_PING",
     "SONAR_RAW",
     "STATIC_TRANSFORMS",
+    "TRANSFORMS",
+    "TRIED",
     "Topic",
     "find",
 ]
@@ -53,19 +70,40 @@ STATIC_TRANSFORMS = Topic("tf_static", "tf2_msgs/msg/TFMessage", latched=True)
 
 INPUTS = (SONAR_PING, SONAR_RAW, IMU, PRESSURE, DVL, GROUND_TRUTH, STATIC_TRANSFORMS)
 
+ODOM = Topic("odom", "nav_msgs/msg/Odometry")
+SCAN = Topic("scan", "sensor_msgs/msg/PointCloud2", latched=True)
+CONSTRAINTS = Topic("graph/constraints", "nav_msgs/msg/Odometry", latched=True)
+KEYFRAMES = Topic("graph/keyframes", "nav_msgs/msg/Path", latched=True)
+MARKERS = Topic("graph/markers", "visualization_msgs/msg/MarkerArray", latched=True)
+POSE = Topic("pose", "geometry_msgs/msg/PoseWithCovarianceStamped")
+PATH = Topic("path", "nav_msgs/msg/Path", latched=True)
+RECKONED_PATH = Topic("path/dead_reckoning", "nav_msgs/msg/Path", latched=True)
+MAP_POINTS = Topic("map/points", "sensor_msgs/msg/PointCloud2", latched=True)
+MAP = Topic("map", "nav_msgs/msg/OccupancyGrid", latched=True)
+TRANSFORMS = Topic("tf", "tf2_msgs/msg/TFMessage")
+
 OUTPUTS = (
-    Topic("odom", "nav_msgs/msg/Odometry"),
-    Topic("scan", "sensor_msgs/msg/PointCloud2"),
-    Topic("graph/constraints", "nav_msgs/msg/Odometry"),
-    Topic("graph/keyframes", "nav_msgs/msg/Path", latched=True),
-    Topic("graph/markers", "visualization_msgs/msg/MarkerArray", latched=True),
-    Topic("pose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
-    Topic("path", "nav_msgs/msg/Path", latched=True),
-    Topic("path/dead_reckoning", "nav_msgs/msg/Path", latched=True),
-    Topic("map/points", "sensor_msgs/msg/PointCloud2", latched=True),
-    Topic("map", "nav_msgs/msg/OccupancyGrid", latched=True),
-    Topic("tf", "tf2_msgs/msg/TFMessage"),
+    ODOM,
+    SCAN,
+    CONSTRAINTS,
+    KEYFRAMES,
+    MARKERS,
+    POSE,
+    PATH,
+    RECKONED_PATH,
+    MAP_POINTS,
+    MAP,
+    TRANSFORMS,
 )
+
+SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2")
+SCAN_BEAMS = Topic("scan/beams", "sensor_msgs/msg/PointCloud2", latched=True)
+TRIED = Topic("graph/tried", "diagnostic_msgs/msg/DiagnosticArray", latched=True)
+GRAPH_POSES = Topic("graph/poses", "sensor_msgs/msg/PointCloud2", latched=True)
+CORRECTION = Topic("graph/correction", "nav_msgs/msg/Odometry", latched=True)
+
+LINKS = (SETTLED_ODOMETRY, SCAN_BEAMS, TRIED, GRAPH_POSES, CORRECTION)
+"""What the nodes tell each other, without loss."""
 
 
 def find(name: str) -> Topic | None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.evaluation.assessment import Assessment, assess
+from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.report import write_comparison_report, write_report
-from msss_graphslam.evaluation.summary import summarise
 from msss_graphslam.offline.estimation import Progress, estimate, recipe_named
+from msss_graphslam.offline.writing import write_results
 from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import RunRecord
@@ -26,7 +26,7 @@ def run(
     directory = ResultDirectory.create(output)
     record = estimate(recording, recipe, configuration, progress)
     progress(0.95, "report")
-    write_report(directory, _write(record, directory))
+    write_report(directory, write_results(record, directory))
     progress(1.0, "done")
     return record
 
@@ -59,11 +59,4 @@ def _compared(
         progress(0.95 * (number + fraction) / len(ESTIMATORS), name)
 
     record = estimate(recording, ESTIMATORS[name], configuration, share)
-    return _write(record, ResultDirectory.create(output / name))
-
-
-def _write(record: RunRecord, directory: ResultDirectory) -> Assessment:
-    assessment = assess(record)
-    directory.write_estimate(record)
-    directory.write_summary(summarise(assessment))
-    return assessment
+    return write_results(record, ResultDirectory.create(output / name))

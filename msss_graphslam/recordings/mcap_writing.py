@@ -18,16 +18,18 @@ _CHUNK_BYTES = 256 * 1024
 class McapFile:
     """A file of serialised messages being written: zstd chunks with CRC, profile ``ros2``.
 
-    It is a context manager; an exception inside leaves nothing behind.
+    It is a context manager; an exception inside leaves nothing behind, or with ``keeps_partial``
+    the unfinished file ``partial``.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, keeps_partial: bool = False) -> None:
         self.path = path
-        self._partial = path.with_name(f".{path.name}.part")
+        self._keeps_partial = keeps_partial
+        self.partial = path.with_name(f".{path.name}.part")
 
     def __enter__(self) -> Self:
         """Begin the file."""
-        self._stream: BinaryIO = self._partial.open("wb")
+        self._stream: BinaryIO = self.partial.open("wb")
         self._writer = Writer(
             self._stream, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD
         )
@@ -46,9 +48,14 @@ class McapFile:
                 if kind is None:
                     self._writer.finish()  # type: ignore[no-untyped-call]
             if kind is None:
-                self._partial.replace(self.path)
+                self.partial.replace(self.path)
         finally:
-            self._partial.unlink(missing_ok=True)
+            if not self._keeps_partial:
+                self.partial.unlink(missing_ok=True)
+
+    def flush(self) -> None:
+        """End the chunk, and hand over to the operating system."""
+        self._writer.flush()  # type: ignore[no-untyped-call]
 
     def add_schema(self, name: str, encoding: str, definition: bytes) -> int:
         """Register a message definition and return its id."""

@@ -31,10 +31,13 @@ class BagWriter:
     path
         ``NAME.mcap`` for a single file, which replaces an earlier one; else a rosbag2 folder,
         which must not exist yet (UserError).
+    keeps_partial
+        After an exception the unfinished file stays, for ``msss salvage``.
     """
 
-    def __init__(self, path: Path | str) -> None:
+    def __init__(self, path: Path | str, *, keeps_partial: bool = False) -> None:
         self.path = Path(path)
+        self._keeps_partial = keeps_partial
         self._is_folder = self.path.suffix != ".mcap"
         self._partial = self.path.with_name(f".{self.path.name}.part")
         self._channels: dict[Hashable, tuple[int, TopicSummary]] = {}
@@ -47,7 +50,7 @@ class BagWriter:
         if self._is_folder:
             require_absent(self.path)
         try:
-            self._file = McapFile(self._prepare()).__enter__()
+            self._file = McapFile(self._prepare(), self._keeps_partial).__enter__()
         except OSError as error:
             raise UserError(f"{self.path}: cannot be written ({error.strerror})") from error
         return self
@@ -65,15 +68,30 @@ class BagWriter:
                 (self._partial / "metadata.yaml").write_text(self._metadata(), encoding="utf-8")
                 self._partial.replace(self.path)
         finally:
-            if self._is_folder:
+            if self._is_folder and not self._keeps_partial:
                 shutil.rmtree(self._partial, ignore_errors=True)
+
+    @property
+    def partial(self) -> Path:
+        """Where the file grows until it is whole."""
+        return self._file.partial
 
     def write(self, topic: str, message: Any, stamp_ns: int) -> None:
         """Append a message (of the types of ``typestore``) as received at ``stamp_ns``."""
         type_name = message.__msgtype__
-        out = self._channels.get(topic) or self._register(topic, type_name)
         data = bytes(TYPES.serialize_cdr(message, type_name, little_endian=True))
-        self._append(out, data, stamp_ns, stamp_ns, 0)
+        self.write_raw(topic, type_name, data, stamp_ns, stamp_ns)
+
+    def write_raw(
+        self, topic: str, type_name: str, data: bytes, log_ns: int, publish_ns: int
+    ) -> None:
+        """Append a serialised message (CDR) of a type of ``typestore``."""
+        out = self._channels.get(topic) or self._register(topic, type_name)
+        self._append(out, data, log_ns, publish_ns, 0)
+
+    def flush(self) -> None:
+        """Bring what was written so far into the file, where it outlives this process."""
+        self._file.flush()
 
     def copy(self, raw: RawMessage) -> None:
         """Append a message of another bag as it is, with its definition and times."""

@@ -26,20 +26,20 @@ def standing_scan(
     points, covariances = see(list(walls), truth, rng, outliers=0.0)
     start = number * TURN_NS
     stamps = start + TURN_NS // BEAMS * np.arange(BEAMS, dtype=np.int64)
+    reckoned = np.zeros((BEAMS + 1, 6))
+    reckoned[:, [0, 1, 5]] = odometry
+    reckoned[:, 2] = -2.0
     scan = Scan(
-        stamp_ns=start,
         end_stamp_ns=start + TURN_NS,
         beam_stamps_ns=stamps,
         motion=np.zeros((BEAMS, 3)),
         motion_covariances=np.zeros((BEAMS, 3, 3)),
-        heights=np.full(BEAMS, -2.0),
+        reckoned=reckoned,
         beam_index=np.arange(len(points)),
         body_points=points,
         body_covariances=covariances,
         points=points,
         covariances=covariances,
-        odometry=odometry,
-        end_motion=np.zeros(3),
         twist_covariance=np.diag([twist_deviation, twist_deviation, 1e-3]) ** 2,
     )
     return lay_out(scan, scan.motion, scan.twist_covariance)

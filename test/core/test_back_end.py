@@ -267,3 +267,39 @@ def test_the_kernel_spares_the_odometry() -> None:
     back_end = fed([apart], Config())
     distance = np.linalg.norm(back_end.poses()[1, :2] - START[:2])
     assert distance == pytest.approx(2.0, abs=1e-3)
+
+
+def test_the_first_keyframe_taken_lies_where_it_says() -> None:
+    back_end = BackEnd(LEAST_SQUARES)
+    poses, covariance = back_end.take(START, [])
+    np.testing.assert_allclose(poses, START[None], atol=1e-9)
+    assert np.abs(covariance).max() < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_taking_keyframe_by_keyframe_is_updating(seed: int) -> None:
+    _, steps = ring(seed)
+    back_end, expected = BackEnd(LEAST_SQUARES), fed(steps)
+    back_end.take(START, [])
+    for new in steps:
+        poses, covariance = back_end.take(np.full(3, 99.0), new)
+    np.testing.assert_array_equal(poses, expected.poses())
+    np.testing.assert_array_equal(covariance, expected.covariance(NODES - 1))
+
+
+def test_only_the_first_keyframe_s_own_pose_counts() -> None:
+    back_end = BackEnd(LEAST_SQUARES)
+    back_end.take(START, [])
+    relative = np.array([1.0, 0.0, 0.1])
+    poses, _ = back_end.take(np.array([50.0, 50.0, 1.0]), [edge(0, 1, relative)])
+    assert_same_poses(poses, np.vstack([START, compose(START, relative)]), 1e-9)
+
+
+def test_what_was_refused_is_not_taken() -> None:
+    back_end, relative = BackEnd(LEAST_SQUARES), np.array([1.0, 0.0, 0.1])
+    back_end.take(START, [])
+    wrong = replace(loop(0, 1, np.array([9.0, 9.0, 1.0])), refusal="too_little_overlap")
+    accepted = edge(0, 1, relative)
+    poses, _ = back_end.take(START, [wrong, accepted])
+    assert_same_poses(poses, np.vstack([START, compose(START, relative)]), 1e-9)
+    assert back_end.constraints == [accepted]

@@ -93,3 +93,38 @@ def test_forgetting_bounds_the_memory() -> None:
     kept = history(*range(100))
     kept.forget_before(90)
     assert kept.at(0).stamp_ns == 90
+
+
+def stamps_since(kept: DeadReckoningHistory, stamp_ns: int) -> list[int]:
+    return [entry.stamp_ns for entry in kept.since(stamp_ns)]
+
+
+def test_since_is_what_is_newer() -> None:
+    kept = history(10, 20, 30)
+    assert stamps_since(kept, 9) == [10, 20, 30]
+    assert stamps_since(kept, 10) == [20, 30]
+    assert stamps_since(kept, 19) == [20, 30]
+    assert stamps_since(kept, 30) == []
+    assert stamps_since(DeadReckoningHistory(), 0) == []
+
+
+@pytest.mark.parametrize(("count", "left"), [(1, [30]), (2, [20, 30]), (3, [10, 20, 30])])
+def test_the_last_are_kept(count: int, left: list[int]) -> None:
+    kept = history(10, 20, 30)
+    kept.keep_last(count)
+    assert stamps_since(kept, 0) == left
+    assert len(kept) == count
+    np.testing.assert_allclose(pose_at(kept, 30), 0.03)
+    assert kept.latest is not None
+    assert kept.latest.stamp_ns == 30
+
+
+def test_more_than_there_is_may_be_kept() -> None:
+    kept = history(10, 20)
+    kept.keep_last(5)
+    assert len(kept) == 2
+
+
+def test_the_length_is_what_has_been_taken() -> None:
+    assert len(DeadReckoningHistory()) == 0
+    assert len(history(10, 20, 20, 15)) == 2

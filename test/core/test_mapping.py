@@ -29,20 +29,19 @@ def keyframe(
     motion = np.zeros((max(beam_index, default=0) + 1, 3)) if motion is None else motion
     index = np.array(beam_index, dtype=np.intp)
     beams, points = len(motion), len(index)
+    reckoned = np.zeros((beams + 1, 6))
+    reckoned[:-1, 2] = 0.0 if heights is None else heights
     content = Scan(
-        stamp_ns=0,
         end_stamp_ns=beams,
         beam_stamps_ns=np.arange(beams),
         motion=motion,
         motion_covariances=np.zeros((beams, 3, 3)),
-        heights=np.zeros(beams) if heights is None else heights,
+        reckoned=reckoned,
         beam_index=index,
         body_points=body_points,
         body_covariances=np.tile(0.01 * np.eye(2), (points, 1, 1)),
         points=transform_points(motion[index], body_points),
         covariances=np.tile(0.01 * np.eye(2), (points, 1, 1)),
-        odometry=np.zeros(3),
-        end_motion=np.zeros(3),
         twist_covariance=np.zeros((3, 3)),
     )
     return Keyframe(content, np.asarray(pose, dtype=float), np.eye(3))

@@ -7,7 +7,7 @@ import pytest
 
 from msss_graphslam.core.compounding import between, compose, wrap
 from msss_graphslam.core.online_pose import OnlinePose
-from msss_graphslam.core.types import Array, Odometry
+from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
 
 PERIOD_NS = 40_000_000
 MAP_POSE = np.array([5.0, -3.0, 3.0])
@@ -131,3 +131,158 @@ def test_the_odometry_is_not_changed() -> None:
     online.anchor(MAP_POSE, entry.planar, 0, OFFSET)
     online.at(entry, 10)
     np.testing.assert_array_equal(entry.pose, before)
+
+
+SPREAD = np.array([[4e-3, 1e-3, 2e-4], [1e-3, 2e-3, -1e-4], [2e-4, -1e-4, 1e-4]])
+TWIST_SPREAD = np.diag([0.02, 0.01, 0.004]) ** 2
+
+
+def correction(stamp_ns: int, offset: Array = OFFSET) -> MapCorrection:
+    return MapCorrection(stamp_ns, MAP_POSE, SPREAD, TwistError(offset, TWIST_SPREAD))
+
+
+def followed(entries: list[Odometry]) -> OnlinePose:
+    online = OnlinePose(entries[0])
+    for entry in entries:
+        online.at(entry, entry.stamp_ns)
+    return online
+
+
+@pytest.mark.parametrize("late", [0, 1, 5, 60])
+def test_a_correction_of_the_past_is_the_same_as_one_in_time(late: int) -> None:
+    entries = course()
+    in_time, too_late = followed(entries[:31]), followed(entries[: 31 + late])
+    in_time.correct(correction(entries[30].stamp_ns))
+    too_late.correct(correction(entries[30].stamp_ns))
+    for entry in entries[31:]:
+        expected = in_time.at(entry, entry.stamp_ns)
+        if entry.stamp_ns >= entries[30 + late].stamp_ns:
+            assert_same(too_late.at(entry, entry.stamp_ns), expected[[0, 1, 5]])
+
+
+def test_a_correction_at_an_odometry_is_an_anchor() -> None:
+    entries = course()
+    online, anchored = followed(entries[:31]), OnlinePose(entries[0])
+    online.correct(correction(entries[30].stamp_ns))
+    anchored.anchor(MAP_POSE, entries[30].planar, entries[30].stamp_ns, OFFSET)
+    for entry in entries[30:]:
+        expected = anchored.at(entry, entry.stamp_ns)
+        assert_same(online.at(entry, entry.stamp_ns), expected[[0, 1, 5]])
+
+
+def test_a_correction_between_two_odometries_takes_the_pose_between() -> None:
+    entries = course()
+    half = entries[30].stamp_ns + PERIOD_NS // 2
+    online = followed(entries[:40])
+    online.correct(correction(half, np.zeros(3)))
+    middle = entries[30].planar + 0.5 * (entries[31].planar - entries[30].planar)
+    for entry in entries[40:]:
+        expected = compose(MAP_POSE, between(middle, entry.planar))
+        found = online.at(entry, entry.stamp_ns)
+        np.testing.assert_allclose(found[:2], expected[:2], atol=1e-9)
+
+
+def test_the_newest_correction_counts() -> None:
+    entries = course()
+    online, once = followed(entries[:50]), followed(entries[:50])
+    online.correct(correction(entries[10].stamp_ns, 3.0 * OFFSET))
+    for one in (online, once):
+        one.correct(correction(entries[40].stamp_ns))
+    expected = once.at(entries[60], entries[60].stamp_ns)
+    assert_same(online.at(entries[60], entries[60].stamp_ns), expected[[0, 1, 5]])
+
+
+def test_what_is_remembered_is_caught_up_with_as_what_was_asked() -> None:
+    entries = course()
+    asked, remembered = followed(entries[:50]), followed(entries[:1])
+    for entry in entries[:50]:
+        remembered.remember(entry)
+    for online in (asked, remembered):
+        online.correct(correction(entries[20].stamp_ns))
+    expected = asked.at(entries[49], entries[49].stamp_ns)
+    np.testing.assert_array_equal(remembered.at(entries[49], entries[49].stamp_ns), expected)
+
+
+def test_a_correction_may_come_before_anything_was_asked() -> None:
+    """As after a restart: where dead reckoning is now, the map says it was then."""
+    entries = course()
+    online = OnlinePose(entries[0])
+    online.correct(correction(entries[0].stamp_ns, np.zeros(3)))
+    expected = compose(MAP_POSE, between(entries[0].planar, entries[5].planar))
+    assert_same(online.at(entries[5], entries[5].stamp_ns), expected)
+
+
+def test_a_late_correction_still_finds_its_odometry_after_a_long_time() -> None:
+    """A minute of a fast IMU; what is kept is bounded, but not as short as that."""
+    entries = [odometry(number, np.array([0.004 * number, 0.0, 0.0])) for number in range(13_000)]
+    online = followed(entries)
+    online.correct(correction(entries[-3000].stamp_ns, np.zeros(3)))
+    expected = compose(MAP_POSE, np.array([0.004 * 2999, 0.0, 0.0]))
+    assert_same(online.at(entries[-1], entries[-1].stamp_ns), expected, 1e-9)
+
+
+def driving(count: int = 100, rate: float = 0.0) -> list[Odometry]:
+    pose, entries = np.array([1.0, 2.0, 0.3]), []
+    for number in range(count):
+        entries.append(odometry(number, pose))
+        pose = compose(pose, np.array([0.01, 0.0, rate]))
+    return entries
+
+
+def test_the_covariance_is_dead_reckoning_s_before_any_correction() -> None:
+    entry = course(1)[0]
+    online = OnlinePose(entry)
+    np.testing.assert_array_equal(online.covariance(entry), entry.covariance)
+    assert online.covariance(entry) is not entry.covariance
+
+
+def planar(covariance: Array) -> Array:
+    return covariance[np.ix_([0, 1, 5], [0, 1, 5])]
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.02])
+def test_the_covariance_begins_with_the_correction_s_and_grows(rate: float) -> None:
+    entries = driving(rate=rate)
+    online = followed(entries[:11])
+    online.correct(correction(entries[10].stamp_ns))
+    np.testing.assert_allclose(planar(online.covariance(entries[10])), SPREAD, atol=1e-12)
+    headings, spreads = [], []
+    for entry in entries[10:]:
+        online.at(entry, entry.stamp_ns)
+        covariance = online.covariance(entry)
+        np.testing.assert_allclose(covariance, covariance.T, atol=1e-15)
+        assert np.linalg.eigvalsh(covariance)[0] > 0.0
+        headings.append(covariance[5, 5])
+        spreads.append(np.linalg.det(planar(covariance)))
+    assert (np.diff(headings) > 0.0).all()
+    assert (np.diff(spreads) > 0.0).all()
+
+
+def test_the_covariance_is_that_of_samples() -> None:
+    """An oracle: the pose and a twist error drawn at random and carried on."""
+    entries = driving(rate=0.01)
+    online = followed(entries[:1])
+    online.correct(correction(0, np.zeros(3)))
+    online.at(entries[-1], entries[-1].stamp_ns)
+    rng, found = np.random.default_rng(0), []
+    for _ in range(400):
+        sample = OnlinePose(entries[0])
+        pose = rng.multivariate_normal(MAP_POSE, SPREAD)
+        twist = rng.multivariate_normal(np.zeros(3), TWIST_SPREAD)
+        sample.anchor(pose, entries[0].planar, 0, twist)
+        for entry in entries[1:]:
+            last = sample.at(entry, entry.stamp_ns)
+        found.append([last[0], last[1], last[5]])
+    spread = np.cov(np.array(found).T)
+    ratios = np.linalg.eigvals(np.linalg.solve(planar(online.covariance(entries[-1])), spread))
+    assert (ratios.real > 0.7).all()
+    assert (ratios.real < 1.3).all()
+
+
+def test_depth_and_tilt_keep_dead_reckoning_s_covariance() -> None:
+    entries = driving()
+    online = followed(entries)
+    online.correct(correction(entries[50].stamp_ns))
+    covariance = online.covariance(entries[-1])
+    np.testing.assert_array_equal(covariance[2:5, 2:5], np.eye(3))
+    assert not covariance[np.ix_([0, 1, 5], [2, 3, 4])].any()

@@ -138,6 +138,14 @@ def test_online_begins_with_the_first_pose_that_there_is() -> None:
     assert len(estimate.online.stamps_ns) > len(recorded().beams) - 30
 
 
+def test_online_is_dead_reckoning_where_nothing_corrects_it() -> None:
+    """Corrections come a little after the turn's end; what has moved since counts once."""
+    estimate = estimated("dead_reckoning")
+    at = np.searchsorted(estimate.dead_reckoning.stamps_ns, estimate.online.stamps_ns)
+    away = estimate.online.poses - estimate.dead_reckoning.poses[at]
+    assert np.linalg.norm(away[:, :2], axis=1).max() < 0.0005
+
+
 def test_every_stage_is_entered() -> None:
     entered: Counter[str] = Counter()
 

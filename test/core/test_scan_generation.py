@@ -10,7 +10,12 @@ from msss_graphslam.core.attitude import rotation_matrix
 from msss_graphslam.core.compounding import between, compose, transform_points, wrap
 from msss_graphslam.core.history import DeadReckoningHistory, Turn
 from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.scan_generation import generate_scan, lay_out, motion_covariances
+from msss_graphslam.core.scan_generation import (
+    generate_scan,
+    lay_out,
+    motion_covariances,
+    reckoned_motion,
+)
 from msss_graphslam.core.types import Array, Odometry, Reading, Scan
 
 BEAMS = 200
@@ -99,12 +104,27 @@ def test_the_motion_is_that_of_the_odometry() -> None:
     planar = driven()
     scan = room_scan()
     np.testing.assert_allclose(scan.motion, between(planar[0], planar[:-1]), atol=1e-9)
-    np.testing.assert_allclose(scan.end_motion, between(planar[0], planar[-1]), atol=1e-9)
+    np.testing.assert_allclose(reckoned_motion(scan.reckoned)[:-1], scan.motion, atol=1e-15)
+    np.testing.assert_allclose(scan.reckoned[:, [0, 1]], planar[:, :2], atol=1e-9)
+    np.testing.assert_allclose(wrap(scan.reckoned[:, 5] - planar[:, 2]), 0.0, atol=1e-9)
     np.testing.assert_allclose(scan.motion[0], np.zeros(3), atol=1e-15)
     np.testing.assert_allclose(scan.odometry, planar[0], atol=1e-12)
     np.testing.assert_allclose(scan.heights, -2.0 - 0.001 * np.arange(BEAMS), atol=1e-12)
     assert (scan.stamp_ns, scan.end_stamp_ns) == (START_NS, START_NS + BEAMS * PERIOD_NS)
     np.testing.assert_allclose(scan.beam_times, 0.05 * np.arange(BEAMS + 1))
+
+
+def test_a_turn_that_is_not_usable_has_poses_but_no_points() -> None:
+    planar = driven()
+    turn = turn_of(to_walls(planar))
+    turn.usable, turn.complete = False, False
+    scan, whole = generate_scan(turn, history_of(planar), SONAR), room_scan()
+    assert not scan.usable
+    assert not scan.complete
+    assert len(scan.points) == len(scan.beam_index) == len(scan.covariances) == 0
+    np.testing.assert_array_equal(scan.reckoned, whole.reckoned)
+    np.testing.assert_array_equal(scan.motion, whole.motion)
+    assert len(whole.points) == BEAMS
 
 
 def test_the_nearest_candidate_is_taken_and_beams_without_one_still_move() -> None:

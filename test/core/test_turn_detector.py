@@ -115,7 +115,8 @@ def test_the_gap_from_both_sides(silence: int, dropped: int) -> None:
     turns, last, refused = detect(entries)
     assert refused["turn_dropped_for_a_gap"] == dropped
     assert refused["beams_in_dropped_turns"] == 100 * dropped
-    assert len(all_readings(turns, last)) == 300 - 100 * dropped
+    assert all_readings(turns, last) == entries
+    assert [len(turn.readings) for turn in turns if not turn.usable] == [100] * dropped
 
 
 @senses
@@ -123,10 +124,36 @@ def test_the_gap_from_both_sides(silence: int, dropped: int) -> None:
 def test_the_bearing_jump_from_both_sides(jump: float, dropped: int, sense: float) -> None:
     bearings = turning(200, 240)
     bearings[100:] += jump - 2.0 * np.pi / 240
-    turns, last, refused = detect(readings(sense * bearings))
+    entries = readings(sense * bearings)
+    turns, last, refused = detect(entries)
     assert refused["turn_dropped_for_a_bearing_jump"] == dropped
     assert refused["beams_in_dropped_turns"] == 100 * dropped
-    assert len(all_readings(turns, last)) == 200 - 100 * dropped
+    assert all_readings(turns, last) == entries
+    assert [len(turn.readings) for turn in turns if not turn.usable] == [100] * dropped
+
+
+def test_a_dropped_turn_ends_at_its_own_last_beam() -> None:
+    """Not at the next one's first: nothing is known of the gap."""
+    bearings = turning(300, 240)
+    entries = readings(bearings[:100])
+    entries += shifted(readings(bearings[100:]), entries[-1].stamp_ns + GAP_NS + 1)
+    (dropped,), last, _ = detect(entries)
+    assert dropped.end_ns == entries[99].stamp_ns
+    assert not dropped.complete
+    assert last is not None
+    assert last.readings == entries[100:]
+
+
+@pytest.mark.parametrize(("beams", "usable"), [(64, False), (65, True)])
+def test_a_last_part_is_usable_from_the_part_turn_on(beams: int, usable: bool) -> None:
+    """Beams of 2 / 63.5 rad: 63 steps are less than the 2 rad of the default, 64 are more."""
+    part = Scanning().part_turn
+    turns, last, refused = detect(readings(part / 63.5 * np.arange(beams)))
+    assert turns == []
+    assert last is not None
+    assert last.usable is usable
+    assert len(last.readings) == beams
+    assert not refused
 
 
 def test_repeated_bearings_do_not_end_a_turn() -> None:
@@ -155,7 +182,7 @@ def test_lost_beams_do_not_shift_the_turns(lost: set[int], sense: float) -> None
     turns, last, refused = detect(kept)
     if "turn_dropped_for_a_bearing_jump" not in refused:
         assert [turn.end_ns // PERIOD_NS for turn in turns] == [240, 480, 720]
-    assert len(all_readings(turns, last)) + refused["beams_in_dropped_turns"] == len(kept)
+    assert all_readings(turns, last) == kept
 
 
 @given(
@@ -171,8 +198,11 @@ def test_no_beam_is_lost_or_doubled(beams: list[tuple[float, int]]) -> None:
     ]
     turns, last, refused = detect(entries)
     found = all_readings(turns, last)
-    refusals = refused["beams_in_dropped_turns"] + refused["beam_not_newer"]
-    assert len(found) + refusals == len(entries)
-    assert all(turn.readings[-1].stamp_ns < turn.end_ns for turn in turns)
+    assert len(found) + refused["beam_not_newer"] == len(entries)
+    for turn in turns:
+        left = turn.end_ns - turn.readings[-1].stamp_ns
+        assert left > 0 if turn.usable else left == 0
+    dropped = sum(len(turn.readings) for turn in turns if not turn.usable)
+    assert dropped == refused["beams_in_dropped_turns"]
     remaining = iter(entries)
     assert all(any(entry is other for other in remaining) for entry in found)

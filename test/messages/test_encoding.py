@@ -47,19 +47,16 @@ def scan() -> Scan:
     count = 4
     stamps = STAMP + np.arange(3) * 40_000_000
     return Scan(
-        stamp_ns=STAMP,
         end_stamp_ns=int(stamps[-1]),
         beam_stamps_ns=stamps,
         motion=np.zeros((3, 3)),
         motion_covariances=np.zeros((3, 3, 3)),
-        heights=np.zeros(3),
+        reckoned=np.zeros((4, 6)),
         beam_index=np.array([0, 1, 1, 2]),
         body_points=np.zeros((count, 2)),
         body_covariances=np.zeros((count, 2, 2)),
         points=np.arange(8.0).reshape(count, 2),
         covariances=np.arange(16.0).reshape(count, 2, 2),
-        odometry=np.zeros(3),
-        end_motion=np.zeros(3),
         twist_covariance=np.eye(3),
     )
 

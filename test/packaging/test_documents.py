@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAPER_TO_CODE = (ROOT / "docs" / "paper_to_code.md").read_text(encoding="utf-8")
-PACKAGES = "core|config|evaluation|results|simulation|recordings|messages|offline"
+PACKAGES = "core|config|evaluation|results|simulation|recordings|messages|offline|ros|nodes|live"
 NAMES = sorted(set(re.findall(rf"`((?:{PACKAGES})\.[\w.]+)`", PAPER_TO_CODE)))
 DOCUMENTS = [
     "README.md",
@@ -38,6 +38,13 @@ def look_up(name: str) -> object:
 @pytest.mark.parametrize("name", NAMES)
 def test_what_the_paper_is_mapped_to_exists(name: str) -> None:
     assert look_up(name) is not None
+
+
+def test_every_package_has_its_row_in_the_layout() -> None:
+    layout = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Layout")[2]
+    rows = re.findall(r"^\| `(\w+)` \|", layout.partition("## Rules")[0], re.MULTILINE)
+    packages = [path.parent.name for path in (ROOT / "msss_graphslam").glob("*/__init__.py")]
+    assert sorted(rows) == sorted(packages)
 
 
 @pytest.mark.parametrize("name", ["core.spic.no_such_thing", "core.no_such_module"])

@@ -44,6 +44,14 @@ class Sensors:
         minimum=0.0,
         maximum=5.0,
     )
+    patience: float = parameter(
+        5.0,
+        "a sensor that is silent for longer is not waited for when measurements are put into the"
+        " order of their stamps",
+        unit="s",
+        minimum=0.5,
+        maximum=60.0,
+    )
 
 
 @dataclass(frozen=True, slots=True)

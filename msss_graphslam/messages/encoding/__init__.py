@@ -9,6 +9,13 @@ rclpy turns a numpy scalar into 0.0 without a word; arrays leave as numpy arrays
 
 from msss_graphslam.messages.encoding.clouds import map_cloud, occupancy_grid, scan_cloud
 from msss_graphslam.messages.encoding.graph import constraint, graph_markers
+from msss_graphslam.messages.encoding.links import (
+    correction,
+    graph_poses,
+    scan_beams,
+    settled_odometry,
+    tried,
+)
 from msss_graphslam.messages.encoding.poses import (
     ground_truth,
     odometry,
@@ -23,8 +30,10 @@ from msss_graphslam.messages.encoding.sensors import fluid_pressure, imu, laser_
 __all__ = [
     "Make",
     "constraint",
+    "correction",
     "fluid_pressure",
     "graph_markers",
+    "graph_poses",
     "ground_truth",
     "imu",
     "laser_scan",
@@ -34,8 +43,11 @@ __all__ = [
     "path",
     "pose",
     "quaternion",
+    "scan_beams",
     "scan_cloud",
+    "settled_odometry",
     "tf_message",
     "transform",
+    "tried",
     "twist",
 ]

@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What happened in a mission, and what is made of it in the end."""
+
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+
+import numpy as np
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.beam_log import BeamLog
+from msss_graphslam.core.recipes import Recipe
+from msss_graphslam.core.refinement import refine, whole_graph
+from msss_graphslam.core.scan_correction import corrected_scans
+from msss_graphslam.core.types import (
+    Array,
+    Constraint,
+    Estimate,
+    Keyframe,
+    Scan,
+    Stage,
+    TwistError,
+)
+
+__all__ = ["Logbook"]
+
+
+class Logbook:
+    """Scans, constraints and poses as they come; an Estimate at the end.
+
+    ``poses`` (n, 3) are those of the keyframes as the graph has them now, ``twist_error``
+    what the newest one has shown of dead reckoning.
+    """
+
+    def __init__(
+        self, configuration: Configuration, recipe: Recipe, stage: Stage = lambda _: nullcontext()
+    ) -> None:
+        self._configuration = configuration
+        self._recipe = recipe
+        self._stage = stage
+        self._beams = BeamLog()
+        self.scans: list[Scan] = []
+        self.constraints: list[Constraint] = []
+        self.poses: Array = np.empty((0, 3))
+        self.twist_error: TwistError | None = None
+
+    def add_scan(self, scan: Scan) -> None:
+        """Note the beams of a scan, and the scan if it is a keyframe's."""
+        self._beams.add_scan(scan)
+        if scan.usable:
+            self.scans.append(scan)
+
+    def add_online(self, stamp_ns: int, pose: Array) -> None:
+        """Note the pose (6,) that a subscriber had at ``stamp_ns``."""
+        self._beams.add_online(stamp_ns, pose)
+
+    def keyframe_scans(self) -> list[Scan]:
+        """Return the keyframes' scans, made anew from the trajectory as it stands."""
+        scans = self.scans[: len(self.poses)]
+        return corrected_scans(scans, self.poses, self._recipe.solver, self._learned)
+
+    def finish(self, progress: Callable[[float], None] = lambda _: None) -> Estimate:
+        """Refine the graph if the recipe says so, and return everything."""
+        covariances = self._settle(progress)
+        rows = zip(self.keyframe_scans(), self.poses, covariances, strict=True)
+        keyframes = tuple(Keyframe(*row) for row in rows)
+        error = self._learned.mean if self._learned else np.zeros(3)
+        return Estimate(
+            estimator=self._recipe.name,
+            trajectory=self._beams.corrected(self.scans, self.poses, self._recipe.solver, error),
+            online=self._beams.online,
+            dead_reckoning=self._beams.dead_reckoning,
+            keyframes=keyframes,
+            first_scans=tuple(self.scans[: len(self.poses)]),
+            constraints=tuple(self.constraints),
+        )
+
+    @property
+    def _learned(self) -> TwistError | None:
+        return self.twist_error if self._recipe.goes_beyond else None
+
+    def _settle(self, progress: Callable[[float], None]) -> Sequence[Array]:
+        """Refine, and return the covariances (3, 3) of the keyframes."""
+        matcher, config = self._recipe.matcher, self._configuration
+        if not self._recipe.goes_beyond or matcher is None or len(self.poses) < 2:
+            back_end = whole_graph(self.poses, self.constraints, config.back_end)
+        else:
+            with self._stage("refinement"):
+                refined = refine(
+                    self.scans[: len(self.poses)],
+                    self.poses,
+                    self.constraints,
+                    self._learned,
+                    matcher(config.matching),
+                    config.back_end,
+                    progress,
+                )
+            self.poses, self.constraints = refined.poses, refined.constraints
+            back_end = refined.back_end
+        return [back_end.covariance(number) for number in range(len(self.poses))]

@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scans made anew from the corrected trajectory, Section VII."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from msss_graphslam.core.compounding import between
+from msss_graphslam.core.motion_feedback import offset_motion
+from msss_graphslam.core.scan_generation import lay_out
+from msss_graphslam.core.trajectory_correction import Solver, correct_motion
+from msss_graphslam.core.types import Array, Scan, TwistError
+
+__all__ = ["correct_scan", "corrected_scans"]
+
+
+def correct_scan(
+    scan: Scan, following: Scan, target: Array, solver: Solver, twist_covariance: Array
+) -> tuple[Scan, Array]:
+    """Return the scan made anew so that the following keyframe is met, and delta X (3,).
+
+    ``target`` (3,) is the following keyframe in the scan's; both scans are as dead reckoning laid
+    them out. ``twist_covariance`` (3, 3) is that of the motion's remaining slow error.
+    """
+    end = between(scan.odometry, following.odometry)
+    correction = correct_motion(scan.motion, end, target, solver)
+    return lay_out(scan, correction.poses, twist_covariance), correction.delta
+
+
+def corrected_scans(
+    scans: Sequence[Scan], poses: Array, solver: Solver, known: TwistError | None
+) -> list[Scan]:
+    """Return all scans, as dead reckoning laid them out, made anew by the poses (n, 3).
+
+    Their motion's error stays as uncertain as dead reckoning says. The last one, which no keyframe
+    follows, has the twist error taken out that is known by then.
+    """
+    # What one match has shown of the twist is too sure of itself here: pairs matched again with so
+    # small a motion error draw each other along, farther with every pass.
+    pairs = zip(pairwise(scans), pairwise(poses), strict=True)
+    corrected = [
+        correct_scan(scan, following, between(*ends), solver, scan.twist_covariance)[0]
+        for (scan, following), ends in pairs
+    ]
+    if scans:
+        corrected.append(_with_twist_error(scans[-1], known))
+    return corrected
+
+
+def _with_twist_error(scan: Scan, known: TwistError | None) -> Scan:
+    if known is None:
+        return scan
+    motion = offset_motion(scan.motion, scan.beam_times[:-1], known.mean)
+    return lay_out(scan, motion, known.covariance)

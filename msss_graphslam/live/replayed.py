@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The recording that is replayed: looked at before anything starts, and for its truth."""
+
+from collections import Counter
+from pathlib import Path
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.types import Trajectory
+from msss_graphslam.recordings.reader import open_recording
+
+__all__ = ["configured_for", "truth_of"]
+
+
+def configured_for(bag: Path, configuration: Configuration) -> Configuration:
+    """Return the configuration with the bag's mounting of the head, unless it has its own.
+
+    Raises UserError where the bag cannot be read, or has no sonar.
+    """
+    recording = open_recording(bag)
+    recording.measurements(Counter(), configuration)
+    mounting = recording.mounting()
+    if mounting is None:
+        return configuration
+    default, chosen = Configuration().as_dict(), configuration.as_dict()
+    recorded = {}
+    for name, value in mounting.parameters.items():
+        group, _, key = name.partition(".")
+        if chosen[group][key] == default[group][key]:
+            recorded[name] = value
+    return configuration.with_values(recorded)
+
+
+def truth_of(bag: Path) -> Trajectory | None:
+    """Return the bag's ground truth, for the evaluation alone, or None where it has none."""
+    return open_recording(bag).ground_truth()

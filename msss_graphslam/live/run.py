@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""A whole run of the nodes: what must be there is looked for first, then a session."""
+
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from msss_graphslam.errors import UserError
+from msss_graphslam.live.command_table import REPLAY, SLAM_NODES, Setup, command_table
+from msss_graphslam.live.conclusion import conclude_in
+from msss_graphslam.live.replayed import configured_for
+from msss_graphslam.live.session import Outcome, Progress, run_session
+from msss_graphslam.live.supervisor import Say
+from msss_graphslam.results.directory import ResultDirectory
+
+__all__ = ["run"]
+
+_LOGS = "log"
+_ABSENT = "was not found at the end, its last data may be missing"
+
+
+def run(setup: Setup, say: Say, progress: Progress) -> Outcome:
+    """Run every node as a process of its own, and have the results written.
+
+    Raises UserError where that cannot be, before anything is started if it can be known then, or
+    where no results were written.
+    """
+    setup = _checked(setup)
+    directory = ResultDirectory.create(setup.output)
+    summary = directory.path / "summary.json"
+    before = _changed_at(summary)
+    with TemporaryDirectory(prefix="msss_live_") as folder:
+        outcome = run_session(
+            command_table(setup, Path(folder)),
+            directory.path / _LOGS,
+            saving=SLAM_NODES,
+            until=REPLAY if setup.replay is not None else None,
+            conclude=conclude_in(setup.namespace),
+            say=say,
+            progress=progress,
+        )
+    if _changed_at(summary) == before:
+        raise UserError(f"{setup.output}: nothing written, {_reason(outcome)}")
+    absent = {name: _ABSENT for name in SLAM_NODES if name not in outcome.answers}
+    return replace(outcome, failed=absent | outcome.failed)
+
+
+def _checked(setup: Setup) -> Setup:
+    """Return the setup as the replayed bag completes it; UserError for what cannot work."""
+    if find_spec("rclpy") is None:
+        raise UserError("rclpy is missing: source ROS 2 Jazzy, or use the .venv of `make setup`")
+    if setup.record is not None and setup.record.exists():
+        raise UserError(f"{setup.record}: exists already; nothing is recorded over it")
+    if setup.replay is None:
+        return setup
+    return replace(setup, configuration=configured_for(setup.replay, setup.configuration))
+
+
+def _reason(outcome: Outcome) -> str:
+    """Return why there are no results: who failed first, or what was said in place of saving."""
+    for name, reason in outcome.failed.items():
+        return f"{name}: {reason}"
+    writer = SLAM_NODES[-1]
+    return f"{writer}: {outcome.answers.get(writer, 'was not found')}"
+
+
+def _changed_at(path: Path) -> int | None:
+    return path.stat().st_mtime_ns if path.exists() else None

@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""How far a replay runs ahead of dead reckoning. No ROS."""
+
+import struct
+from collections import deque
+from statistics import median_low
+
+__all__ = ["Lead", "header_stamp_ns"]
+
+# One second of sensor time, less the batch that is sent before the next look.
+_LIMIT_NS = 900_000_000
+_OFFSETS = 15
+# Dead reckoning tells of its progress ten times a second, behind its window for late data.
+_REPORT_NS = 500_000_000
+_STAMP = {1: struct.Struct("<iI"), 0: struct.Struct(">iI")}
+
+
+def header_stamp_ns(data: bytes) -> int | None:
+    """Return the stamp [ns] of a serialised message (CDR) that begins with a header."""
+    if len(data) < 12 or data[0] != 0 or data[1] not in _STAMP:
+        return None
+    seconds, nanoseconds = _STAMP[data[1]].unpack_from(data, 4)
+    return int(seconds) * 1_000_000_000 + int(nanoseconds)
+
+
+class Lead:
+    """Sensor time between what was sent and what dead reckoning has taken.
+
+    Log times may differ from stamps by a constant. It is the median over some messages, so that
+    a senseless stamp does not stop the replay.
+    """
+
+    def __init__(self, limit_ns: int = _LIMIT_NS) -> None:
+        self._limit_ns = limit_ns
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget everything: the next message is the first."""
+        self._offsets: deque[int] = deque(maxlen=_OFFSETS)
+        self._sent_ns: int | None = None
+        self._settled_ns: int | None = None
+        self._allowed_ns: int | None = None
+
+    def sent(self, log_ns: int, data: bytes) -> None:
+        """Note a sensor's message as it goes out."""
+        stamp_ns = header_stamp_ns(data)
+        if stamp_ns is not None:
+            self._offsets.append(stamp_ns - log_ns)
+        if self._allowed_ns is None:
+            self._allowed_ns = log_ns
+        self._sent_ns = log_ns
+
+    def settled(self, stamp_ns: int) -> bool:
+        """Note how far dead reckoning is; return whether that is news."""
+        if stamp_ns == self._settled_ns:
+            return False
+        self._settled_ns = stamp_ns
+        return True
+
+    def release(self) -> None:
+        """Allow the limit once more from here, whatever dead reckoning says."""
+        self._allowed_ns = self._sent_ns
+
+    @property
+    def is_too_long(self) -> bool:
+        """Whether the replay has to wait."""
+        if self._sent_ns is None or self._allowed_ns is None:
+            return False
+        taken_ns = max(self._allowed_ns, self._taken_ns or self._allowed_ns)
+        return self._sent_ns - taken_ns > self._limit_ns
+
+    @property
+    def is_over(self) -> bool:
+        """Whether dead reckoning has taken all that was sent, but for its last report."""
+        if self._sent_ns is None:
+            return True
+        return self._taken_ns is not None and self._sent_ns - self._taken_ns <= _REPORT_NS
+
+    @property
+    def _taken_ns(self) -> int | None:
+        """Log time of what dead reckoning has taken."""
+        if self._settled_ns is None:
+            return None
+        return self._settled_ns - (median_low(self._offsets) if self._offsets else 0)

@@ -1,0 +1,67 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""When to do slow things, and when nothing is on its way any more: by wall time."""
+
+from collections.abc import Callable
+from time import monotonic
+
+__all__ = ["Stillness", "Throttle"]
+
+_LEISURE = 10.0
+_STILL = 0.25
+_FORGOTTEN = 5.0
+
+
+class Throttle:
+    """Allows work when something has changed, at most every ``period`` seconds.
+
+    Work that takes long is done more rarely: nine tenths of the time at least are left to others.
+    """
+
+    def __init__(self, period: float, clock: Callable[[], float] = monotonic) -> None:
+        self._period = period
+        self._clock = clock
+        self._next = -1e9
+        self._is_due = False
+
+    def ask(self) -> None:
+        """Note that there is something to do."""
+        self._is_due = True
+
+    def run(self, work: Callable[[], object]) -> bool:
+        """Do the work if it is asked for and it is time; return whether it was done."""
+        begun = self._clock()
+        if not self._is_due or begun < self._next:
+            return False
+        self._is_due = False
+        try:
+            work()
+        finally:
+            end = self._clock()
+            self._next = begun + max(self._period, _LEISURE * (end - begun))
+        return True
+
+
+class Stillness:
+    """Whether all that was sent before somebody asked must have arrived by now.
+
+    The answer of another node may overtake what it has published before; so the first question is
+    never answered with yes.
+    """
+
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+        self._clock = clock
+        self._arrival = self._asked = -1e9
+        self._since = -1e9
+
+    def stir(self) -> None:
+        """Note an arrival."""
+        self._arrival = self._clock()
+
+    def holds(self) -> bool:
+        """Answer the question."""
+        now = self._clock()
+        if now - self._asked > _FORGOTTEN:
+            self._since = now
+        self._asked = now
+        return now - max(self._arrival, self._since) >= _STILL

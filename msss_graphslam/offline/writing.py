@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""From an estimate to the record of its run, and to the files of a directory."""
+
+import shlex
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from msss_graphslam import __version__
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.mapping import map_points, occupancy_grid
+from msss_graphslam.core.types import Beam, Estimate
+from msss_graphslam.evaluation.assessment import Assessment, assess
+from msss_graphslam.evaluation.summary import summarise
+from msss_graphslam.offline.stopwatch import Stopwatch
+from msss_graphslam.recordings.inspection import lacks
+from msss_graphslam.recordings.reader import Recording
+from msss_graphslam.results.directory import ResultDirectory
+from msss_graphslam.results.record import BagInfo, RunRecord, example_scan
+
+__all__ = ["command_line", "record_of", "write_results"]
+
+
+def command_line(words: Sequence[str], configuration: Configuration) -> str:
+    """Return a command with all of the configuration that is not as it always is."""
+    values = configuration.as_dict()
+    changes: list[str] = []
+    for info in Configuration.parameters():
+        group, _, key = info.name.partition(".")
+        if values[group][key] != info.default:
+            changes += ["--set", f"{info.name}={values[group][key]}"]
+    return shlex.join([*words, *changes])
+
+
+def record_of(
+    result: Estimate,
+    configuration: Configuration,
+    recording: Recording | None,
+    refused: Counter[str],
+    beams: int,
+    watch: Stopwatch,
+    command: str,
+) -> RunRecord:
+    """Return all that is known at the end of a run.
+
+    Without a recording there is neither a truth nor an example of raw echoes.
+    """
+    with watch.stage("mapping"):
+        points = map_points(result.keyframes)
+        mount = np.array([configuration.sonar.mount_x, configuration.sonar.mount_y])
+        grid = occupancy_grid(result.keyframes, configuration.mapping, mount)
+    return RunRecord(
+        estimate=result,
+        points=points,
+        grid=grid,
+        truth=recording.ground_truth(refused) if recording else None,
+        beams=beams,
+        refused=refused,
+        configuration=configuration.as_dict(),
+        bag=_bag_info(recording) if recording else _live_info(result),
+        cost=watch.cost,
+        version=__version__,
+        command=command,
+        example_beams=_example_beams(recording, result) if recording else (),
+    )
+
+
+def write_results(record: RunRecord, directory: ResultDirectory) -> Assessment:
+    """Write the estimate and its summary; return the assessment for a report."""
+    assessment = assess(record)
+    directory.write_estimate(record)
+    directory.write_summary(summarise(assessment))
+    return assessment
+
+
+def _bag_info(recording: Recording) -> BagInfo:
+    return BagInfo(
+        name=recording.path.name,
+        start_ns=recording.start_ns,
+        end_ns=recording.end_ns,
+        messages={name: topic.count for name, topic in recording.topics.items()},
+        missing=tuple(f"{lack.name}: {lack.cost}" for lack in lacks(recording)),
+        damage=(str(recording.damage),) if recording.damage else (),
+    )
+
+
+def _live_info(result: Estimate) -> BagInfo:
+    stamps = result.trajectory.stamps_ns
+    return BagInfo("live data", int(stamps[0]), int(stamps[-1]), messages={})
+
+
+def _example_beams(recording: Recording, result: Estimate) -> tuple[Beam, ...]:
+    number = example_scan(result)
+    if number is None:
+        return ()
+    stamps = set(result.keyframes[number].scan.beam_stamps_ns.tolist())
+    return tuple(
+        beam for beam in recording.beams(min(stamps), max(stamps)) if beam.stamp_ns in stamps
+    )

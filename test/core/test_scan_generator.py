@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from small_mission import seconds_of, until
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.dead_reckoning import DeadReckoning
+from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.types import Beam, Odometry, Scan
+
+CONFIGURATION = Configuration()
+DURATION = 35.0
+
+
+def beams(end: float = DURATION) -> list[Beam]:
+    return [entry for entry in until(end) if isinstance(entry, Beam)]
+
+
+@cache
+def odometry(end: float = DURATION) -> tuple[Odometry, ...]:
+    reckoning = DeadReckoning(CONFIGURATION.dead_reckoning, Counter())
+    return tuple(entry for one in until(end) for entry in reckoning.process(one))
+
+
+def fed(
+    entries: Iterable[Beam | Odometry], refused: Counter[str] | None = None
+) -> tuple[list[Scan], ScanGenerator]:
+    generator = ScanGenerator(CONFIGURATION, Counter() if refused is None else refused)
+    scans = []
+    for entry in entries:
+        if isinstance(entry, Beam):
+            scans += generator.add_beam(entry)
+        else:
+            scans += generator.add_odometry(entry)
+    return scans, generator
+
+
+def generated(
+    entries: Iterable[Beam | Odometry], refused: Counter[str] | None = None
+) -> list[Scan]:
+    scans, generator = fed(entries, refused)
+    return scans + generator.finish()
+
+
+def by_stamp(
+    some: Iterable[Beam | Odometry], lag_ns: int = 0, jitter_ns: int = 0, seed: int = 0
+) -> list[Beam | Odometry]:
+    """Beams and odometry by their stamps, the odometry later by ``lag_ns`` and at random."""
+    rng, entries, arrivals = np.random.default_rng(seed), list(some), []
+    latest = {Beam: 0, Odometry: 0}
+    for entry in sorted(entries, key=lambda one: one.stamp_ns):
+        lag = (isinstance(entry, Odometry) * lag_ns) + int(rng.integers(0, jitter_ns + 1))
+        latest[type(entry)] = max(latest[type(entry)], entry.stamp_ns + lag)
+        arrivals.append((latest[type(entry)], entry))
+    return [entry for _, entry in sorted(arrivals, key=lambda row: row[0])]
+
+
+def contents(scans: list[Scan]) -> list[tuple[bytes | int | bool, ...]]:
+    """Every number of the scans, to be compared bit by bit."""
+    return [
+        (
+            scan.beam_stamps_ns.tobytes(),
+            scan.end_stamp_ns,
+            scan.reckoned.tobytes(),
+            scan.twist_covariance.tobytes(),
+            scan.beam_index.tobytes(),
+            scan.points.tobytes(),
+            scan.covariances.tobytes(),
+            scan.motion_covariances.tobytes(),
+            scan.complete,
+            scan.usable,
+        )
+        for scan in scans
+    ]
+
+
+@cache
+def expected() -> tuple[Scan, ...]:
+    return tuple(generated(by_stamp([*beams(), *odometry()])))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_scans_do_not_depend_on_the_interleaving(seed: int) -> None:
+    entries = by_stamp([*beams(), *odometry()], jitter_ns=4 * 10**9, seed=seed)
+    assert contents(generated(entries)) == contents(list(expected()))
+
+
+@pytest.mark.parametrize("lag_ns", [-20 * 10**9, -(10**8), 10**8, 20 * 10**9])
+def test_the_scans_do_not_depend_on_which_comes_first(lag_ns: int) -> None:
+    entries = by_stamp([*beams(), *odometry()], lag_ns=lag_ns)
+    assert contents(generated(entries)) == contents(list(expected()))
+
+
+def test_all_beams_first_or_all_odometry_first() -> None:
+    assert contents(generated([*beams(), *odometry()])) == contents(list(expected()))
+    assert contents(generated([*odometry(), *beams()])) == contents(list(expected()))
+
+
+def stamps_of(scans: Iterable[Scan]) -> list[int]:
+    return [int(stamp) for scan in scans for stamp in scan.beam_stamps_ns]
+
+
+def test_every_beam_is_in_exactly_one_scan_in_order() -> None:
+    assert [scan.complete for scan in expected()] == [True] * 4 + [False]
+    assert stamps_of(expected()) == [beam.stamp_ns for beam in beams()]
+
+
+def test_a_turn_ends_where_the_next_begins_by_the_same_dead_reckoning() -> None:
+    for scan, following in zip(expected()[:-1], expected()[1:], strict=True):
+        assert scan.end_stamp_ns == following.stamp_ns
+        np.testing.assert_array_equal(scan.reckoned[-1], following.reckoned[0])
+
+
+def test_a_scan_comes_with_the_odometry_that_covers_it() -> None:
+    generator = ScanGenerator(CONFIGURATION, Counter())
+    assert [scan for beam in beams() for scan in generator.add_beam(beam)] == []
+    assert generator.waiting == 4
+    end = expected()[0].end_stamp_ns
+    before = [entry for entry in odometry() if entry.stamp_ns < end]
+    assert [scan for entry in before for scan in generator.add_odometry(entry)] == []
+    covering = odometry()[len(before)]
+    (scan,) = generator.add_odometry(covering)
+    assert scan.end_stamp_ns == end <= covering.stamp_ns
+    assert generator.waiting == 3
+
+
+@pytest.mark.parametrize(("short_ns", "scans"), [(0, 1), (1, 0)])
+def test_covered_from_both_sides(short_ns: int, scans: int) -> None:
+    end = expected()[0].end_stamp_ns
+    entry = replace(odometry()[-1], stamp_ns=end - short_ns)
+    found, _ = fed([*beams(), odometry()[0], entry])
+    assert len(found) == scans
+
+
+def with_gap() -> list[Beam]:
+    return [beam for beam in beams() if not 12.0 < seconds_of(beam) < 17.0]
+
+
+def test_a_dropped_turn_is_not_usable_and_keeps_its_beams() -> None:
+    refused: Counter[str] = Counter()
+    scans = generated(by_stamp([*with_gap(), *odometry()]), refused)
+    assert stamps_of(scans) == [beam.stamp_ns for beam in with_gap()]
+    dropped, last = (scan for scan in scans if not scan.usable)
+    assert last is scans[-1]
+    assert refused["turn_dropped_for_a_gap"] == 1
+    assert refused["beams_in_dropped_turns"] == len(dropped.beam_stamps_ns)
+    assert len(dropped.points) == 0
+    assert not dropped.complete
+    assert np.isfinite(dropped.reckoned).all()
+    assert all(len(scan.points) for scan in scans if scan.usable)
+
+
+@pytest.mark.parametrize("lag_ns", [-20 * 10**9, 20 * 10**9])
+def test_dropped_turns_do_not_depend_on_the_interleaving_either(lag_ns: int) -> None:
+    in_time = generated(by_stamp([*with_gap(), *odometry()]))
+    assert contents(generated(by_stamp([*with_gap(), *odometry()], lag_ns))) == contents(in_time)
+
+
+def test_a_beam_that_is_not_newer_is_counted_and_in_no_scan() -> None:
+    refused: Counter[str] = Counter()
+    twice = [beam for beam in beams() for _ in range(2)]
+    assert contents(generated([*twice, *odometry()], refused)) == contents(list(expected()))
+    assert refused == {"beam_not_newer": len(beams())}
+
+
+def test_at_the_end_also_what_no_odometry_covers() -> None:
+    early = [entry for entry in odometry() if seconds_of_odometry(entry) < 15.0]
+    scans, generator = fed([*beams(), *early])
+    assert len(scans) == 1
+    rest = generator.finish()
+    assert stamps_of([*scans, *rest]) == [beam.stamp_ns for beam in beams()]
+    np.testing.assert_array_equal(rest[-1].reckoned[-1], early[-1].pose)
+    assert generator.waiting == 0
+    assert generator.finish() == []
+
+
+def seconds_of_odometry(entry: Odometry) -> float:
+    return (entry.stamp_ns - beams()[0].stamp_ns) * 1e-9
+
+
+def test_without_odometry_there_are_no_scans() -> None:
+    assert generated(beams()) == []
+
+
+def test_without_beams_there_are_no_scans() -> None:
+    assert generated(odometry()) == []
+    assert generated([]) == []

@@ -1,0 +1,215 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes as real processes, each test in a domain of its own, and what listens to them."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+__all__ = ["Domain", "NodeProcess", "TestNode", "domain", "wait_until"]
+
+ROOT = Path(__file__).parents[2]
+LIMIT = 60.0
+
+
+def wait_until(
+    condition: Callable[[], Any], what: str = "the condition", limit: float = LIMIT
+) -> Any:
+    """Return the condition's value once it is true; an AssertionError after the limit [s]."""
+    until = time.monotonic() + limit
+    while not (value := condition()):
+        assert time.monotonic() < until, f"waited {limit} s in vain for {what}"
+        time.sleep(0.01)
+    return value
+
+
+class Domain:
+    """A ROS domain that nobody else on this machine has taken."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables of a process in this domain."""
+        return {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(self.number),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "ROS_PYTHON_CHECK_FIELDS": "1",
+            "OMP_NUM_THREADS": "1",
+            "PYTHONUNBUFFERED": "1",
+        }
+
+    def start(self, node: str, *arguments: str, namespace: str = "", **parameters: Any) -> Any:
+        """Start ``msss_graphslam.nodes.<node>``; use the result as a context manager."""
+        options = [f"-p{name}:={_as_yaml(value)}" for name, value in parameters.items()]
+        options = [part for option in options for part in ("-p", option[2:])]
+        remapped = ["-r", f"__ns:={namespace}"] if namespace else []
+        ros = [*options, *remapped, *arguments]
+        command = [sys.executable, "-m", f"msss_graphslam.nodes.{node}"]
+        return NodeProcess([*command, "--ros-args", *ros] if ros else command, self)
+
+
+@contextmanager
+def domain() -> Iterator[Domain]:
+    """Give a domain; the lock on it goes with the process, however that ends."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as lock:
+        first = os.getpid() * 7
+        for number in (1 + (first + offset) % 100 for offset in range(100)):
+            try:
+                lock.bind(f"\0msss_graphslam_domain_{number}")
+            except OSError:
+                continue
+            yield Domain(number)
+            return
+    raise AssertionError("every ROS domain is taken")
+
+
+class NodeProcess:
+    """A process whose output is collected; it is killed at the end if it still runs."""
+
+    def __init__(self, command: list[str], of: Domain) -> None:
+        self.command = command
+        self._domain = of
+        self._lines: list[str] = []
+
+    def __enter__(self) -> Self:
+        self._process = subprocess.Popen(
+            self.command,
+            env=self._domain.environment,
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self.is_running:
+            self._process.kill()
+        self._process.wait()
+        self._reader.join(5.0)
+        if kind is not None:
+            print(f"--- {' '.join(self.command[2:])} ---\n{self.output}", file=sys.stderr)
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    @property
+    def output(self) -> str:
+        return "".join(list(self._lines))
+
+    def wait(self, limit: float = LIMIT) -> int:
+        """Return the exit code once it has ended by itself, all its output read."""
+        code = self._process.wait(limit)
+        self._reader.join(5.0)
+        return code
+
+    def wait_for_output(self, pattern: str, limit: float = LIMIT) -> str:
+        """Return what in the output matches the pattern, once it does."""
+        found = wait_until(
+            lambda: re.search(pattern, self.output) or not self.is_running, repr(pattern), limit
+        )
+        self._reader.join(0.0 if self.is_running else 5.0)
+        found = re.search(pattern, self.output)
+        assert found, f"{pattern!r} is not in the output:\n{self.output}"
+        return found.group()
+
+    def signal(self, number: int) -> None:
+        self._process.send_signal(number)
+
+    def interrupt(self, limit: float = LIMIT) -> int:
+        """Do as Ctrl-C does; return the exit code."""
+        self.signal(signal.SIGINT)
+        return self.wait(limit)
+
+    def kill(self) -> None:
+        """Kill it as kill -9 does."""
+        self._process.kill()
+        self._process.wait()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self._lines.append(line)
+
+
+class TestNode:
+    """A node in the test's own process, spun in a thread, in a domain."""
+
+    __test__ = False
+
+    def __init__(self, of: Domain, name: str = "test", namespace: str = "/") -> None:
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=of.number)
+        self.node = Node(name, namespace=namespace, context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._stop.set()
+        self._thread.join()
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+    def call(self, kind: Any, service: str, limit: float = LIMIT, **fields: Any) -> Any:
+        """Return the answer of a service."""
+        client = self.node.create_client(kind, service)
+        try:
+            assert client.wait_for_service(limit), f"no service {service}"
+            future = client.call_async(kind.Request(**fields))
+            wait_until(future.done, f"an answer of {service}", limit)
+            return future.result()
+        finally:
+            self.node.destroy_client(client)
+
+    def _spin(self) -> None:
+        while not self._stop.is_set():
+            self.executor.spin_once(timeout_sec=0.05)
+
+
+def _as_yaml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value)

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The recorder: what was published is in the bag; what is killed can be salvaged."""
+
+import re
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from nodes.processes import Domain, TestNode, domain, wait_until
+from sample_bags import sensor_messages
+
+from msss_graphslam.messages import topics
+from msss_graphslam.recordings.reader import open_recording
+from msss_graphslam.recordings.typestore import TYPES
+from msss_graphslam.ros.messages import message_class
+from msss_graphslam.ros.qos import profile_of
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def at() -> Iterator[Domain]:
+    with domain() as found:
+        yield found
+
+
+def publish(source: TestNode, beams: int = 50) -> dict[str, list[bytes]]:
+    """Publish every sensor's messages once the recorder listens; return their bytes."""
+    publishers = {}
+    for name, _, _ in sensor_messages(1):
+        topic = topics.find(name)
+        assert topic is not None
+        kind = message_class(topic.type_name)
+        publishers[name] = source.node.create_publisher(kind, topic.name, profile_of(topic))
+    for publisher in publishers.values():
+        wait_until(publisher.get_subscription_count, "the recorder")
+    sent: dict[str, list[bytes]] = {name: [] for name in publishers}
+    for name, message, _ in sensor_messages(beams):
+        data = bytes(TYPES.serialize_cdr(message, message.__msgtype__))
+        publishers[name].publish(data)
+        sent[name].append(data)
+    return sent
+
+
+def watch(source: TestNode) -> list[dict[str, int]]:
+    """Return a list that grows with the recorder's counts."""
+    counts: list[dict[str, int]] = []
+
+    def take(message: object) -> None:
+        for status in message.status:
+            rows = {row.key: row.value for row in status.values}
+            counts.append({k: int(v) for k, v in rows.items() if re.match("recorded/", k)})
+
+    kind = message_class("diagnostic_msgs/msg/DiagnosticArray")
+    source.node.create_subscription(kind, "/diagnostics", take, 100)
+    return counts
+
+
+@pytest.mark.parametrize(("name", "namespace"), [("dive", "/"), ("dive.mcap", "/auv")])
+def test_what_is_published_is_in_the_bag(
+    tmp_path: Path, at: Domain, name: str, namespace: str
+) -> None:
+    bag = tmp_path / name
+    prefix = namespace.rstrip("/")
+    options = {"output": bag, "namespace": prefix}
+    with (
+        TestNode(at, namespace=namespace) as source,
+        at.start("bag_recorder", **options) as process,
+    ):
+        counts = watch(source)
+        sent = publish(source)
+        wait_until(lambda: counts and counts[-1][f"recorded/{prefix}/ground_truth"] == 50, "all")
+        assert not bag.exists()
+        assert process.interrupt(5.0) == 0
+    read: dict[str, list[bytes]] = {}
+    for raw in open_recording(bag).messages():
+        read.setdefault(raw.channel.topic, []).append(raw.data)
+    assert read.pop("/diagnostics")
+    assert read == {f"{prefix}{topic}": messages for topic, messages in sent.items()}
+
+
+def test_what_a_kill_leaves_is_kept_aside(tmp_path: Path, at: Domain) -> None:
+    bag = tmp_path / "dive"
+    with TestNode(at) as source, at.start("bag_recorder", output=bag) as process:
+        counts = watch(source)
+        publish(source)
+        seen = wait_until(lambda: [c for c in counts if c["recorded//ground_truth"] == 50], "all")
+        known = len(seen)
+        wait_until(lambda: len(counts) >= known + 3, "the next flushes")
+        process.kill()
+    assert not bag.exists()
+    with at.start("bag_recorder", output=bag) as process:
+        process.wait_for_output("an earlier recording was cut off")
+        process.wait_for_output("recording into")
+        assert process.interrupt(5.0) == 0
+    kept = open_recording(tmp_path / "dive.unfinished-1")
+    assert kept.topics["/sonar/ping"].count == 50
+    assert kept.damage.truncated
+    assert bag.exists()
+
+
+def test_an_existing_bag_is_not_touched(tmp_path: Path, at: Domain) -> None:
+    bag = tmp_path / "dive.mcap"
+    bag.write_bytes(b"precious")
+    with at.start("bag_recorder", output=bag) as process:
+        assert process.wait() == 1
+        assert "exists already" in process.output
+        assert len(process.output.splitlines()) == 1
+    assert bag.read_bytes() == b"precious"
+
+
+def test_without_an_output_it_says_so(at: Domain) -> None:
+    with at.start("bag_recorder") as process:
+        assert process.wait() == 1
+        assert "parameter output is missing" in process.output
+
+
+def test_a_termination_finishes_the_bag(tmp_path: Path, at: Domain) -> None:
+    bag = tmp_path / "dive.mcap"
+    with at.start("bag_recorder", output=bag) as process:
+        process.wait_for_output("recording into")
+        process.signal(signal.SIGTERM)
+        assert process.wait(5.0) == 0
+    assert [entry.name for entry in tmp_path.iterdir()] == ["dive.mcap"]

@@ -1,0 +1,204 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the front end does when the back end is late, new, silent, or of another opinion."""
+
+from collections import Counter
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from nodes.linked_nodes import LinkedNodes, scans_of
+from small_mission import recorded
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.core.types import GraphPoses, KeyframeReport, MapCorrection, Scan
+from msss_graphslam.messages.refusal import Refusal
+from msss_graphslam.nodes.keyframing import Keyframing
+
+
+@cache
+def scans() -> tuple[Scan, ...]:
+    return tuple(scan for scan in scans_of(recorded().measurements) if scan.usable)[:6]
+
+
+class Lonely:
+    """A front end whose back end the test plays."""
+
+    def __init__(self) -> None:
+        self.refused: Counter[str] = Counter()
+        self.reports: list[KeyframeReport] = []
+        self.corrections: list[MapCorrection] = []
+        self.now = 0.0
+        self.front = Keyframing(
+            Configuration(),
+            ESTIMATORS["uspic"],
+            self.refused,
+            self.reports.append,
+            self.corrections.append,
+            lambda: self.now,
+        )
+
+
+def answer(reports: list[KeyframeReport], **changes: Any) -> GraphPoses:
+    fields = {
+        "stamps_ns": np.array([report.stamp_ns for report in reports], dtype=np.int64),
+        "poses": np.array([report.pose for report in reports]).reshape(-1, 3),
+        "odometry": np.array([report.odometry for report in reports]).reshape(-1, 3),
+        "covariances": np.tile(1e-4 * np.eye(3), (len(reports), 1, 1)),
+    }
+    return GraphPoses(**{**fields, **changes})
+
+
+def test_the_next_scan_waits_for_the_answer() -> None:
+    lonely = Lonely()
+    for scan in scans()[:3]:
+        lonely.front.add_scan(scan)
+    assert [report.number for report in lonely.reports] == [0]
+    assert lonely.front.waiting == 3
+    lonely.front.add_answer(answer(lonely.reports))
+    assert [report.number for report in lonely.reports] == [0, 1]
+    assert lonely.front.waiting == 2
+    assert len(lonely.corrections) == 1
+
+
+def test_the_answer_of_the_keyframe_before_is_not_taken_for_it() -> None:
+    lonely = Lonely()
+    for scan in scans()[:2]:
+        lonely.front.add_scan(scan)
+    early = answer(lonely.reports)
+    lonely.front.add_answer(early)
+    lonely.front.add_answer(early)
+    assert lonely.front.waiting == 1
+    assert len(lonely.corrections) == 1
+    assert not lonely.refused
+
+
+def test_the_next_keyframe_starts_from_the_poses_of_the_answer() -> None:
+    lonely = Lonely()
+    for scan in scans()[:2]:
+        lonely.front.add_scan(scan)
+    lonely.front.add_answer(answer(lonely.reports))
+    moved = answer(lonely.reports)
+    moved.poses[-1] += [5.0, -3.0, 0.0]
+    lonely.front.add_answer(moved)
+    assert lonely.corrections[-1].pose[0] - lonely.corrections[0].pose[0] > 3.0
+    lonely.front.add_scan(scans()[2])
+    assert np.linalg.norm(lonely.reports[-1].pose[:2] - moved.poses[-1, :2]) < 3.0
+
+
+def test_a_scan_that_comes_twice_is_taken_once() -> None:
+    linked = LinkedNodes()
+    for scan in (scans()[0], scans()[0], scans()[1], scans()[0]):
+        linked.add_scan(scan)
+    assert linked.front.keyframes == 2
+    assert not linked.refused
+
+
+def test_a_scan_older_than_the_last_is_refused() -> None:
+    lonely = Lonely()
+    lonely.front.add_scan(scans()[1])
+    with pytest.raises(Refusal, match="scan_beams_out_of_order"):
+        lonely.front.add_scan(scans()[0])
+
+
+def test_time_passes_while_an_answer_is_owed_alone() -> None:
+    lonely = Lonely()
+    assert lonely.front.waited == 0.0
+    lonely.front.add_scan(scans()[0])
+    lonely.now = 7.0
+    assert lonely.front.waited == 7.0
+    lonely.front.add_answer(answer(lonely.reports))
+    assert lonely.front.waited == 0.0
+
+
+def test_a_silent_back_end_is_counted_and_gone_without() -> None:
+    lonely = Lonely()
+    for scan in scans()[:2]:
+        lonely.front.add_scan(scan)
+    lonely.front.give_up()
+    lonely.front.give_up()
+    assert lonely.refused == {"back_end_silent": 2}
+    assert [report.number for report in lonely.reports] == [0, 1]
+    assert len(lonely.corrections) == 2
+    lonely.front.give_up()
+    assert lonely.refused.total() == 2
+
+
+def test_the_back_end_takes_up_what_came_while_it_was_away() -> None:
+    linked = LinkedNodes(answers=False)
+    for scan in scans()[:3]:
+        linked.add_scan(scan)
+        linked.front.give_up()
+    linked.answers = True
+    linked.add_scan(scans()[3])
+    linked.deliver()
+    assert len(linked.back.poses) == linked.front.keyframes == 4
+    assert linked.front.waiting == 0
+
+
+def test_a_keyframe_that_the_back_end_does_not_take_is_withdrawn() -> None:
+    lonely = Lonely()
+    lonely.front.add_scan(scans()[0])
+    known = answer(lonely.reports)
+    lonely.front.add_answer(known)
+    lonely.front.add_scan(scans()[1])
+    lonely.front.add_answer(known)
+    lonely.front.give_up()
+    assert lonely.refused == {"back_end_silent": 1, "keyframe_not_taken": 1}
+    lonely.front.add_scan(scans()[2])
+    assert [report.number for report in lonely.reports] == [0, 1, 1]
+
+
+def test_a_front_end_that_starts_anew_catches_up() -> None:
+    linked = LinkedNodes()
+    for scan in scans()[:4]:
+        linked.add_scan(scan)
+    before = linked.back.poses.copy()
+    linked.start_front_end()
+    linked.replay_scans()
+    assert linked.front.keyframes == 4
+    np.testing.assert_array_equal(linked.back.poses, before)
+    linked.add_scan(scans()[4])
+    assert len(linked.back.poses) == 5
+    assert not linked.refused
+
+
+@pytest.mark.parametrize("known_before", [True, False])
+def test_a_front_end_without_the_old_scans_goes_on_with_the_graph(known_before: bool) -> None:
+    linked = LinkedNodes()
+    for scan in scans()[:3]:
+        linked.add_scan(scan)
+    linked.start_front_end()
+    if known_before:
+        linked.front.add_answer(linked.answer())
+    for scan in scans()[3:]:
+        linked.add_scan(scan)
+    assert len(linked.back.poses) == linked.front.keyframes == len(scans())
+    assert linked.refused["graph_of_another_front_end"] == (not known_before)
+    assert linked.front.waiting == 0
+
+
+def test_a_graph_that_fits_nowhere_does_not_stop_the_front_end() -> None:
+    lonely = Lonely()
+    lonely.front.add_scan(scans()[0])
+    strange = answer(lonely.reports, stamps_ns=np.array([scans()[0].stamp_ns + 1]))
+    lonely.front.add_answer(strange)
+    lonely.front.add_scan(scans()[1])
+    assert lonely.refused["graph_of_another_front_end"] == 1
+    assert lonely.reports[-1].stamp_ns == scans()[1].stamp_ns
+
+
+def test_a_scan_that_cannot_be_worked_on_does_not_stop_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    linked = LinkedNodes("uspic")
+    linked.add_scan(scans()[0])
+    with monkeypatch.context() as patch:
+        patch.setattr(FrontEnd, "report", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            linked.add_scan(scans()[1])
+    linked.add_scan(scans()[2])
+    assert len(linked.back.poses) == linked.front.keyframes == 2

@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""When slow work is done, and when nothing is on its way any more."""
+
+from msss_graphslam.nodes.timing import Stillness, Throttle
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_work_is_done_when_asked_for_and_not_too_often() -> None:
+    clock, done = Clock(), []
+    throttle = Throttle(2.0, clock)
+    assert not throttle.run(lambda: done.append(1))
+    throttle.ask()
+    assert throttle.run(lambda: done.append(1))
+    throttle.ask()
+    clock.now += 1.99
+    assert not throttle.run(lambda: done.append(1))
+    clock.now += 0.02
+    assert throttle.run(lambda: done.append(1))
+    assert not throttle.run(lambda: done.append(1))
+    assert len(done) == 2
+
+
+def test_long_work_is_done_more_rarely() -> None:
+    clock = Clock()
+    throttle = Throttle(0.0, clock)
+
+    def work() -> None:
+        clock.now += 1.0
+
+    throttle.ask()
+    assert throttle.run(work)
+    throttle.ask()
+    clock.now += 8.9
+    assert not throttle.run(work)
+    clock.now += 0.2
+    assert throttle.run(work)
+
+
+def test_the_first_question_is_not_answered_with_yes() -> None:
+    clock = Clock()
+    still = Stillness(clock)
+    assert not still.holds()
+    clock.now += 0.3
+    assert still.holds()
+
+
+def test_an_arrival_makes_the_question_new() -> None:
+    clock = Clock()
+    still = Stillness(clock)
+    still.holds()
+    clock.now += 0.2
+    still.stir()
+    clock.now += 0.2
+    assert not still.holds()
+    clock.now += 0.2
+    assert still.holds()
+
+
+def test_who_asks_a_long_time_later_waits_again() -> None:
+    clock = Clock()
+    still = Stillness(clock)
+    still.holds()
+    clock.now += 60.0
+    assert not still.holds()

@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of the whole share: missions, made once a session, and a domain each."""
+
+from collections.abc import Callable, Iterator
+from functools import cache
+
+import pytest
+from nodes.conftest import tf2_environment
+from nodes.processes import Domain, domain
+from system.missions import Mission, make_mission
+
+__all__ = ["tf2_environment"]
+
+
+@pytest.fixture(scope="session")
+def mission(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Mission]:
+    """Give the short mission of a world by its name."""
+
+    @cache
+    def made(name: str) -> Mission:
+        return make_mission(name, tmp_path_factory.mktemp(name))
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def pond(mission: Callable[[str], Mission]) -> Mission:
+    """The mission in the pond."""
+    return mission("pond")
+
+
+@pytest.fixture
+def own_domain() -> Iterator[Domain]:
+    """A ROS domain for this test alone."""
+    with domain() as own:
+        yield own
