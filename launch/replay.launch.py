@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording in place of the sensors; ends when the nodes have worked off all of it."""
 
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, Shutdown
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-
-from launch import LaunchDescription
 
 PACKAGE = "msss_graphslam"
 REPLAY = {"bag": str, "rate": float, "start_offset": float, "loop": bool}

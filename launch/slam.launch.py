@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The live system: every node a process, and a recorder where one is asked for."""
 
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
 from launch.substitutions import (
@@ -12,8 +13,6 @@ from launch.substitutions import (
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-
-from launch import LaunchDescription
 
 PACKAGE = "msss_graphslam"
 

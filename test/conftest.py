@@ -4,11 +4,16 @@
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from msss_graphslam.simulation.path import Path as Lap
 from msss_graphslam.simulation.recording import SimulatedBag, simulate
 from msss_graphslam.simulation.settings import SonarSettings
 from msss_graphslam.simulation.worlds import World
+
+# No test measures time: a loaded machine is no defect.
+settings.register_profile("patient", deadline=None)
+settings.load_profile("patient")
 
 
 def pytest_configure(config: pytest.Config) -> None:

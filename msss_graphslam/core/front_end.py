@@ -67,6 +67,13 @@ class FrontEnd:
         """The twist error (3,) of dead reckoning that the sonar has shown so far."""
         return self._feedback.offset
 
+    def configure(self, configuration: Configuration) -> None:
+        """Search loop closures by other parameters from the next scan on.
+
+        Only the group ``association`` is taken over: what was matched stays as it was matched.
+        """
+        self._configuration = configuration
+
     def add_scan(self, scan: Scan) -> list[Constraint]:
         """Algorithm 1, lines 8 to 11: return the constraints tried for a new keyframe.
 

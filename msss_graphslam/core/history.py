@@ -110,6 +110,7 @@ class TurnDetector:
         self._readings: list[Reading] = []
         self._swept = 0.0
         self._direction = 0.0
+        self._least_step = FULL_TURN  # a lost beam makes a step longer, never shorter
 
     def add(self, reading: Reading) -> Turn | None:
         """Take in one reading; return the turn that it ends, of which it is not a part.
@@ -129,7 +130,9 @@ class TurnDetector:
         reversed_sweep = step * self._direction < 0.0
         if abs(step) > JUMP and not reversed_sweep:
             return self._drop("turn_dropped_for_a_bearing_jump", reading)
-        if reversed_sweep or self._swept + abs(step) > FULL_TURN - 0.5 * abs(step):
+        self._least_step = min(self._least_step, abs(step) or FULL_TURN)
+        whole = FULL_TURN - min(0.5 * self._least_step, JUMP)
+        if reversed_sweep or self._swept + abs(step) > whole:
             return self._finish(reading)
         self._readings.append(reading)
         self._swept += abs(step)
@@ -146,7 +149,7 @@ class TurnDetector:
 
     def _start(self, reading: Reading) -> None:
         self._readings = [reading]
-        self._swept, self._direction = 0.0, 0.0
+        self._swept, self._direction, self._least_step = 0.0, 0.0, FULL_TURN
 
     def _drop(self, reason: str, reading: Reading) -> Turn:
         self._refused[reason] += 1

@@ -19,16 +19,7 @@ def configured_for(bag: Path, configuration: Configuration) -> Configuration:
     """
     recording = open_recording(bag)
     recording.measurements(Counter(), configuration)
-    mounting = recording.mounting()
-    if mounting is None:
-        return configuration
-    default, chosen = Configuration().as_dict(), configuration.as_dict()
-    recorded = {}
-    for name, value in mounting.parameters.items():
-        group, _, key = name.partition(".")
-        if chosen[group][key] == default[group][key]:
-            recorded[name] = value
-    return configuration.with_values(recorded)
+    return recording.completed(configuration)
 
 
 def truth_of(bag: Path) -> Trajectory | None:

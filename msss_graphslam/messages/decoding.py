@@ -7,13 +7,14 @@ No bytes of a message can make a record with a number that is not finite.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import asin, atan2, copysign, hypot, isfinite, pi, remainder
+from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from msss_graphslam.config.groups import Sensors
 from msss_graphslam.core.types import Array, Beam, BodyVelocity, Depth, Inertial
+from msss_graphslam.messages.fields import angles_of, numbers, pose_of, stamp_of, vector_of
 from msss_graphslam.messages.hydrostatics import height_of
 from msss_graphslam.messages.refusal import Refusal
 
@@ -28,11 +29,7 @@ class TruePose:
     pose: Array
 
 
-_NANOSECONDS = 1_000_000_000
 _LARGEST_CODE = 255.0
-_SHORTEST_QUATERNION = 1e-3
-# Sine of the pitch from where on roll and yaw are one rotation: all of it is given to yaw.
-_VERTICAL = 1.0 - 1e-10
 # Full ocean depth has 1.1e8 Pa. A reading less than half an atmosphere below the surface's is no
 # sensor in water: it is a gauge taken for an absolute sensor, or a dead one.
 _LOWEST_ABSOLUTE, _LOWEST_GAUGE, _HIGHEST = 5e4, -5e4, 1.2e8
@@ -40,26 +37,26 @@ _LOWEST_ABSOLUTE, _LOWEST_GAUGE, _HIGHEST = 5e4, -5e4, 1.2e8
 
 def beam(message: Any) -> Beam:
     """Return the beam of a sensor_msgs/LaserScan."""
-    stamp_ns = _stamp(message, "beam")
+    stamp_ns = stamp_of(message, "beam")
     bearing = float(message.angle_min)
     if not isfinite(bearing):
         raise Refusal("beam_bearing_not_finite")
     if bearing != float(message.angle_max):
         raise Refusal("beam_with_several_bearings")
-    ranges = _bins(_numbers(message.ranges).tobytes())
-    intensities = _numbers(message.intensities)
+    ranges = _bins(numbers(message.ranges).tobytes())
+    intensities = numbers(message.intensities)
     _check_profile(ranges, intensities)
     return Beam(stamp_ns, bearing, ranges, intensities)
 
 
 def inertial(message: Any) -> Inertial:
     """Return the sample of a sensor_msgs/Imu, read as REP-145 says."""
-    stamp_ns = _stamp(message, "imu")
+    stamp_ns = stamp_of(message, "imu")
     orientation = rates = None
     if _given(message.orientation_covariance):
-        orientation = _angles(message.orientation, "imu")
+        orientation = angles_of(message.orientation, "imu")
     if _given(message.angular_velocity_covariance):
-        rates = _xyz(message.angular_velocity, "imu_not_finite")
+        rates = vector_of(message.angular_velocity, "imu_not_finite")
     if orientation is None and rates is None:
         raise Refusal("imu_without_data")
     return Inertial(stamp_ns, orientation, rates)
@@ -67,7 +64,7 @@ def inertial(message: Any) -> Inertial:
 
 def depth(message: Any, sensors: Sensors) -> Depth:
     """Return the depth of a sensor_msgs/FluidPressure."""
-    stamp_ns = _stamp(message, "pressure")
+    stamp_ns = stamp_of(message, "pressure")
     pressure = float(message.fluid_pressure)
     if not isfinite(pressure):
         raise Refusal("pressure_not_finite")
@@ -79,9 +76,9 @@ def depth(message: Any, sensors: Sensors) -> Depth:
 
 def body_velocity(message: Any) -> BodyVelocity:
     """Return the velocity of a geometry_msgs/TwistWithCovarianceStamped."""
-    stamp_ns = _stamp(message, "dvl")
-    velocity = _xyz(message.twist.twist.linear, "dvl_not_finite")
-    covariance = _numbers(message.twist.covariance)
+    stamp_ns = stamp_of(message, "dvl")
+    velocity = vector_of(message.twist.twist.linear, "dvl_not_finite")
+    covariance = numbers(message.twist.covariance)
     if covariance.shape != (36,):
         raise Refusal("dvl_covariance_size")
     covariance = covariance.reshape(6, 6)[:3, :3]
@@ -94,14 +91,14 @@ def body_velocity(message: Any) -> BodyVelocity:
 
 def true_pose(message: Any) -> TruePose:
     """Return the pose of a nav_msgs/Odometry."""
-    stamp_ns = _stamp(message, "ground_truth")
+    stamp_ns = stamp_of(message, "ground_truth")
     placed = message.pose.pose
-    return TruePose(stamp_ns, _pose(placed.position, placed.orientation, "ground_truth"))
+    return TruePose(stamp_ns, pose_of(placed.position, placed.orientation, "ground_truth"))
 
 
 def placement(message: Any) -> Array:
     """Return the child's pose (6,) in its parent of a geometry_msgs/TransformStamped."""
-    return _pose(message.transform.translation, message.transform.rotation, "transform")
+    return pose_of(message.transform.translation, message.transform.rotation, "transform")
 
 
 @lru_cache(maxsize=64)
@@ -127,39 +124,10 @@ def _check_profile(ranges: Array, intensities: Array) -> None:
         raise Refusal("beam_intensity_out_of_range")
 
 
-def _stamp(message: Any, name: str) -> int:
-    stamp = message.header.stamp
-    if stamp.sec < 0 or not 0 <= stamp.nanosec < _NANOSECONDS:
-        raise Refusal(f"{name}_stamp_invalid")
-    return int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec)
-
-
 def _given(covariance: Any) -> bool:
     if len(covariance) != 9:
         raise Refusal("imu_covariance_size")
     return float(covariance[0]) != -1.0
-
-
-def _pose(position: Any, orientation: Any, name: str) -> Array:
-    place = _xyz(position, f"{name}_not_finite")
-    return np.concatenate([place, _angles(orientation, name)])
-
-
-def _angles(quaternion: Any, name: str) -> Array:
-    """Return roll, pitch, yaw (3,) [rad] of a quaternion of any length."""
-    values = float(quaternion.x), float(quaternion.y), float(quaternion.z), float(quaternion.w)
-    length = hypot(*values)
-    if not isfinite(length):
-        raise Refusal(f"{name}_not_finite")
-    if length < _SHORTEST_QUATERNION:
-        raise Refusal(f"{name}_quaternion_zero")
-    x, y, z, w = (value / length for value in values)
-    sine = 2.0 * (w * y - z * x)
-    if abs(sine) > _VERTICAL:
-        return np.array([0.0, copysign(pi / 2.0, sine), remainder(2.0 * atan2(z, w), 2.0 * pi)])
-    roll = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    yaw = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return np.array([roll, asin(sine), yaw])
 
 
 def _is_positive_definite(covariance: Array) -> bool:
@@ -168,14 +136,3 @@ def _is_positive_definite(covariance: Array) -> bool:
         return False
     scaled = covariance / scale
     return bool(np.allclose(scaled, scaled.T) and np.linalg.eigvalsh(scaled)[0] > 0.0)
-
-
-def _numbers(values: Any) -> Array:
-    return np.asarray(values, dtype=np.float64)
-
-
-def _xyz(values: Any, reason: str) -> Array:
-    numbers = float(values.x), float(values.y), float(values.z)
-    if not all(map(isfinite, numbers)):
-        raise Refusal(reason)
-    return np.array(numbers)

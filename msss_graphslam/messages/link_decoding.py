@@ -26,7 +26,7 @@ from msss_graphslam.core.types import (
     TwistError,
 )
 from msss_graphslam.messages.columns import BEAMS, POSES, SETTLED, read_columns, read_stamps
-from msss_graphslam.messages.decoding import _numbers, _pose, _stamp, _xyz
+from msss_graphslam.messages.fields import numbers, pose_of, stamp_of, vector_of
 from msss_graphslam.messages.refusal import Refusal
 
 __all__ = [
@@ -82,7 +82,7 @@ def settled_odometry(message: Any) -> SettledOdometry:
         rows["twist_covariance"].reshape(-1, 6, 6),
         strict=True,
     )
-    return SettledOdometry(_stamp(message, name), tuple(Odometry(*row) for row in columns))
+    return SettledOdometry(stamp_of(message, name), tuple(Odometry(*row) for row in columns))
 
 
 def scan_beams(message: Any) -> Scan:
@@ -94,7 +94,7 @@ def scan_beams(message: Any) -> Scan:
     beams_ns, end_ns = stamps[:-1], int(stamps[-1])
     if (np.diff(beams_ns) <= 0).any() or end_ns < beams_ns[-1]:
         raise Refusal("scan_beams_stamps_not_increasing")
-    if _stamp(message, "scan_beams") != beams_ns[0]:
+    if stamp_of(message, "scan_beams") != beams_ns[0]:
         raise Refusal("scan_beams_stamp_differs")
     hits = np.flatnonzero(rows["echo"][:-1])
     with np.errstate(all="ignore"):  # what overflows is refused
@@ -140,7 +140,7 @@ def tried(message: Any) -> KeyframeReport:
     number, values = int(named[1]), _values(keyframe)
     return KeyframeReport(
         number=number,
-        stamp_ns=_stamp(message, "tried"),
+        stamp_ns=stamp_of(message, "tried"),
         pose=_row(values, "pose", 3),
         odometry=_row(values, "odometry", 3),
         twist_error=TwistError(
@@ -156,8 +156,8 @@ def correction(message: Any) -> MapCorrection:
     name = "correction"
     placed = stamped_pose(message, name)
     twist = message.twist.twist
-    linear = _xyz(twist.linear, "correction_not_finite")
-    angular = _xyz(twist.angular, "correction_not_finite")
+    linear = vector_of(twist.linear, "correction_not_finite")
+    angular = vector_of(twist.angular, "correction_not_finite")
     mean = np.array([linear[0], linear[1], angular[2]])
     error = TwistError(mean, _planar_covariance(message.twist.covariance, name))
     covariance = _planar_covariance(message.pose.covariance, name)
@@ -167,8 +167,8 @@ def correction(message: Any) -> MapCorrection:
 def stamped_pose(message: Any, name: str = "pose") -> StampedPose:
     """Return the pose of a geometry_msgs/PoseWithCovarianceStamped; ``name`` is for refusals."""
     placed = message.pose.pose
-    pose = _pose(placed.position, placed.orientation, name)
-    return StampedPose(_stamp(message, name), pose)
+    pose = pose_of(placed.position, placed.orientation, name)
+    return StampedPose(stamp_of(message, name), pose)
 
 
 def last_pose(message: Any) -> StampedPose:
@@ -189,8 +189,8 @@ def path_poses(message: Any) -> list[StampedPose]:
 
 
 def _path_pose(message: Any) -> StampedPose:
-    pose = _pose(message.pose.position, message.pose.orientation, "path")
-    return StampedPose(_stamp(message, "path"), pose)
+    pose = pose_of(message.pose.position, message.pose.orientation, "path")
+    return StampedPose(stamp_of(message, "path"), pose)
 
 
 def _constraint(status: Any, number: int) -> Constraint:
@@ -227,19 +227,19 @@ def _row(values: dict[str, str], key: str, size: int) -> Array:
     if len(words) != size:
         raise Refusal("tried_values")
     try:
-        numbers = [float(word) for word in words]
+        row = [float(word) for word in words]
     except ValueError:
         raise Refusal("tried_values") from None
-    if not all(map(isfinite, numbers)):
+    if not all(map(isfinite, row)):
         raise Refusal("tried_not_finite")
-    return np.array(numbers)
+    return np.array(row)
 
 
 def _planar_covariance(values: Any, name: str) -> Array:
-    numbers = _numbers(values)
-    if numbers.shape != (36,):
+    flat = numbers(values)
+    if flat.shape != (36,):
         raise Refusal(f"{name}_covariance_size")
-    covariance = numbers.reshape(6, 6)[_PLANAR]
+    covariance = flat.reshape(6, 6)[_PLANAR]
     if not np.isfinite(covariance).all():
         raise Refusal(f"{name}_not_finite")
     return np.asarray(covariance)

@@ -96,7 +96,7 @@ OUTPUTS = (
     TRANSFORMS,
 )
 
-SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2")
+SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2", latched=True)
 SCAN_BEAMS = Topic("scan/beams", "sensor_msgs/msg/PointCloud2", latched=True)
 TRIED = Topic("graph/tried", "diagnostic_msgs/msg/DiagnosticArray", latched=True)
 GRAPH_POSES = Topic("graph/poses", "sensor_msgs/msg/PointCloud2", latched=True)

@@ -36,7 +36,7 @@ class Keyframing:
         place: Callable[[MapCorrection], object],
         clock: Callable[[], float] = monotonic,
     ) -> None:
-        self._front_end = _ChangeableFrontEnd(configuration, recipe)
+        self._front_end = FrontEnd(configuration, recipe)
         self._refused = refused
         self._send = send
         self._place = place
@@ -188,14 +188,6 @@ class Keyframing:
         del self._front_end.nodes[len(known.stamps_ns) :]
         self._front_end.poses = known.poses
         self._pending, self._is_second_try = None, False
-
-
-class _ChangeableFrontEnd(FrontEnd):
-    """A front end whose search for loop closures can be changed on the way."""
-
-    def configure(self, configuration: Configuration) -> None:
-        """Take over changed parameters."""
-        self._configuration = configuration
 
 
 def _same_beginning(own: Stamps, known: Stamps) -> bool:

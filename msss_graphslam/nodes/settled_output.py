@@ -8,6 +8,7 @@ from msss_graphslam.core.types import Odometry
 from msss_graphslam.messages import encoding, topics
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode
+from msss_graphslam.ros.qos import DEEP
 
 __all__ = ["SettledOutput"]
 
@@ -17,11 +18,14 @@ _LONG_AGO = -(2**62)
 
 
 class SettledOutput:
-    """Publishes what settles, and how far dead reckoning has taken its input."""
+    """Publishes what settles, and how far dead reckoning has taken its input.
+
+    The latest minutes are kept for a scan generation that starts late, or again.
+    """
 
     def __init__(self, node: SlamNode) -> None:
         self._refused = node.diagnostics.refused
-        self._output = node.offer(topics.SETTLED_ODOMETRY)
+        self._output = node.offer(topics.SETTLED_ODOMETRY, DEEP)
         self.reset()
 
     def reset(self) -> None:

@@ -44,7 +44,7 @@ def estimate(
     """
     watch = Stopwatch()
     command = _command(recording, recipe, configuration)
-    configuration = _with_mounting(recording, configuration)
+    configuration = recording.completed(configuration)
     refused: Counter[str] = Counter()
     pipeline = Pipeline(configuration, recipe, refused, watch.stage)
     beams = 0
@@ -65,21 +65,6 @@ def _command(recording: Recording, recipe: Recipe, configuration: Configuration)
     """Return the command that makes these results again, from where the bag lies."""
     words = ["msss", "run", recording.path.name, "--estimator", recipe.name]
     return command_line(words, configuration)
-
-
-def _with_mounting(recording: Recording, configuration: Configuration) -> Configuration:
-    """Return the configuration with the bag's mounting of the head, unless it has its own."""
-    mounting = recording.mounting()
-    if mounting is None:
-        return configuration
-    default = {info.name: info.default for info in Configuration.parameters()}
-    sonar = configuration.as_dict()["sonar"]
-    recorded = {
-        name: value
-        for name, value in mounting.parameters.items()
-        if sonar[name.partition(".")[2]] == default[name]
-    }
-    return configuration.with_values(recorded)
 
 
 def _share(recording: Recording, stamp_ns: int) -> float:

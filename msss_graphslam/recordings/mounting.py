@@ -58,6 +58,16 @@ class Mounting:
         """The parameters of the configuration that say the same."""
         return {f"sonar.{name}": value for name, value in asdict(self).items()}
 
+    def completes(self, configuration: Configuration) -> Configuration:
+        """Return the configuration with this mounting; a value that is not the default stays."""
+        default, chosen = asdict(Configuration().sonar), asdict(configuration.sonar)
+        missing = {
+            f"sonar.{name}": value
+            for name, value in asdict(self).items()
+            if chosen[name] == default[name]
+        }
+        return configuration.with_values(missing)
+
     def transforms(self, stamp_ns: int) -> Any:
         """Return the tf2_msgs/TFMessage for the bag's static transforms."""
         pose = np.array([self.mount_x, self.mount_y, 0.0, 0.0, 0.0, self.mount_yaw])

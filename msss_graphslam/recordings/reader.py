@@ -149,6 +149,11 @@ class Recording:
                 return found
         return None
 
+    def completed(self, configuration: Configuration) -> Configuration:
+        """Return the configuration with the bag's mounting of the head, unless it has its own."""
+        mounting = self.mounting()
+        return configuration if mounting is None else mounting.completes(configuration)
+
     def _records(
         self, sources: Sequence[Source[Record]], refusals: Counter[str]
     ) -> Iterator[Record]:

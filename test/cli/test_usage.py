@@ -5,7 +5,7 @@
 import pytest
 from command_line import msss
 
-COMMANDS = ("simulate", "run", "compare", "evaluate", "inspect", "convert", "salvage")
+COMMANDS = ("simulate", "run", "live", "compare", "evaluate", "inspect", "convert", "salvage")
 
 
 def test_help_names_every_command() -> None:

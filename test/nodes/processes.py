@@ -70,7 +70,7 @@ def domain() -> Iterator[Domain]:
     """Give a domain; the lock on it goes with the process, however that ends."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as lock:
         first = os.getpid() * 7
-        for number in (1 + (first + offset) % 100 for offset in range(100)):
+        for number in (1 + (first + offset) % 60 for offset in range(60)):
             try:
                 lock.bind(f"\0msss_graphslam_domain_{number}")
             except OSError:

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages of ``/tf`` that the tests build are the real ones: one process hears another."""
 
-import os
-import random
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
+from nodes.processes import domain
 
 pytestmark = pytest.mark.slow
 
@@ -39,13 +39,13 @@ print(transform.header.frame_id, transform.child_frame_id, transform.transform.t
 """
 
 
-def test_one_process_hears_what_another_publishes(tf2_environment: dict[str, str]) -> None:
-    environment = {
-        **os.environ,
-        **tf2_environment,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_DOMAIN_ID": str(random.SystemRandom().randint(1, 200)),
-    }
+@pytest.fixture
+def environment(tf2_environment: dict[str, str]) -> Iterator[dict[str, str]]:
+    with domain() as own:
+        yield {**own.environment, **tf2_environment}
+
+
+def test_one_process_hears_what_another_publishes(environment: dict[str, str]) -> None:
     speaker, listener = (
         subprocess.Popen(
             [sys.executable, "-c", COMMON + code],

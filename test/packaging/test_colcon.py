@@ -3,7 +3,6 @@
 """The package in a colcon workspace: built, installed, started, tested."""
 
 import os
-import random
 import signal
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from pathlib import Path
 import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from nodes.processes import domain
 from rclpy.executors import SingleThreadedExecutor
 
 ROOT = Path(__file__).parents[2]
@@ -37,17 +37,16 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def environment() -> dict[str, str]:
+def environment() -> Iterator[dict[str, str]]:
     """What a shell has in which the environment is active, alone in its ROS domain."""
-    return {
-        **os.environ,
-        "VIRTUAL_ENV": sys.prefix,
-        "PATH": os.pathsep.join([str(COLCON.parent), os.environ["PATH"]]),
-        "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),
-        "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_DOMAIN_ID": str(random.SystemRandom().randint(1, 200)),
-    }
+    with domain() as own:
+        yield {
+            **own.environment,
+            "VIRTUAL_ENV": sys.prefix,
+            "PATH": os.pathsep.join([str(COLCON.parent), os.environ["PATH"]]),
+            "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),
+            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+        }
 
 
 @pytest.fixture(scope="module")

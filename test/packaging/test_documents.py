@@ -17,6 +17,7 @@ DOCUMENTS = [
     "README.md",
     "CONTRIBUTING.md",
     "bags/README.md",
+    "docs/live.md",
     "docs/paper_to_code.md",
     "docs/recordings.md",
     "docs/reproduction.md",

@@ -129,9 +129,8 @@ def test_a_replay_without_a_bag_is_refused() -> None:
 @pytest.mark.skipif(find_spec("launch_ros") is None, reason="ROS launch is not installed here")
 @pytest.mark.parametrize("name", [SLAM, REPLAY])
 def test_the_real_launch_takes_the_file(name: str) -> None:
-    from launch.launch_description_sources import PythonLaunchDescriptionSource
-
     from launch import LaunchContext
+    from launch.launch_description_sources import PythonLaunchDescriptionSource
 
     source = PythonLaunchDescriptionSource(str(ROOT / "launch" / name))
     description = source.get_launch_description(LaunchContext())

@@ -21,6 +21,7 @@ CORE_MAY_USE |= {
     "cmath",
     "collections",
     "contextlib",
+    "copy",
     "dataclasses",
     "enum",
     "functools",
@@ -53,6 +54,13 @@ def required() -> set[str]:
     return set(ast.literal_eval(lists[0]))
 
 
+def of_ros() -> set[str]:
+    """Return the ROS packages that package.xml names; those of Debian are named python3-*."""
+    text = (ROOT / "package.xml").read_text(encoding="utf-8")
+    named = set(re.findall("<exec_depend>(.*)</exec_depend>", text))
+    return {name for name in named if not name.startswith("python3-")}
+
+
 def pinned(name: str) -> set[str]:
     """Return the packages that a requirements file names, also those it takes from another."""
     text = (ROOT / "requirements" / name).read_text(encoding="utf-8")
@@ -70,7 +78,12 @@ def test_package_xml_names_the_same_version() -> None:
 def test_what_is_imported_is_required_and_nothing_else() -> None:
     used = {name for path in SOURCES for name in imported(path)}
     foreign = used - set(sys.stdlib_module_names) - {"msss_graphslam"}
-    assert {PYPI_NAMES.get(name, name) for name in foreign} == required()
+    assert {PYPI_NAMES.get(name, name) for name in foreign - of_ros()} == required()
+
+
+def test_packages_of_ros_are_not_pips_to_find() -> None:
+    assert "rclpy" in of_ros()
+    assert required().isdisjoint(of_ros())
 
 
 @pytest.mark.parametrize("flavour", ["wheels.txt", "jazzy.txt"])

@@ -138,6 +138,22 @@ def test_the_mounting_is_read_from_static_transforms(tmp_path: Path) -> None:
     assert open_recording(write_bag(tmp_path / "bare", pings(range(2)))).mounting() is None
 
 
+def test_the_mounting_completes_the_configuration(tmp_path: Path) -> None:
+    static = [("/tf_static", Mounting(0.2, -0.1, 0.5).transforms(START_NS), START_NS)]
+    recording = open_recording(write_bag(tmp_path / "dive", [*static, *pings(range(2))]))
+    chosen = Configuration().with_values({"sonar.mount_x": 0.7, "mapping.resolution": 0.2})
+    completed = recording.completed(chosen)
+    sonar = completed.sonar
+    assert (sonar.mount_x, sonar.mount_y, sonar.mount_yaw) == pytest.approx((0.7, -0.1, 0.5))
+    assert completed.mapping == chosen.mapping
+
+
+def test_a_bag_without_a_mounting_leaves_the_configuration_as_it_is(tmp_path: Path) -> None:
+    chosen = Configuration().with_values({"sonar.mount_x": 0.7})
+    bare = open_recording(write_bag(tmp_path / "bare", pings(range(2))))
+    assert bare.completed(chosen) == chosen
+
+
 @pytest.mark.parametrize(
     ("name", "content", "expected"),
     [

@@ -4,13 +4,17 @@
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy
 
-from msss_graphslam.messages import topics
+from msss_graphslam.messages import link_decoding, topics
+from msss_graphslam.messages.refusal import Refusal
 from msss_graphslam.nodes.conclusion import Spin
 from msss_graphslam.nodes.replay.audience import Audience
+from msss_graphslam.nodes.replay.backlog import Backlog
 from msss_graphslam.nodes.replay.lead import Lead, header_stamp_ns
 from msss_graphslam.nodes.replay.output import Output
 from msss_graphslam.recordings.mcap_reading import RawMessage
@@ -56,6 +60,7 @@ class Flow:
         self._spin = spin
         self._log = node.get_logger()
         self._lead = Lead()
+        self._backlog = Backlog()
         self._news = 0
         self._looked = 0.0
         self._members: frozenset[bytes] = frozenset()
@@ -65,6 +70,7 @@ class Flow:
     def restart(self) -> None:
         """Forget what was sent: the next message is the first."""
         self._lead.restart()
+        self._backlog.restart()
 
     def sent(self, raw: RawMessage) -> None:
         """Note what was just published."""
@@ -109,8 +115,33 @@ class Flow:
     def _listen(self, node: Node) -> None:
         kind = message_class(topics.SETTLED_ODOMETRY.type_name)
         profile = profile_of(topics.SETTLED_ODOMETRY, _NEWEST)
+        profile.durability = DurabilityPolicy.VOLATILE
         node.create_subscription(kind, topics.SETTLED_ODOMETRY.name, self._take, profile, raw=True)
         self._node = node
+        self._follow_graph(node)
+
+    def _follow_graph(self, node: Node) -> None:
+        """Hear of scans and corrections from now on, not of those that are kept."""
+        for topic, take in (
+            (topics.SCAN_BEAMS, self._take_scan),
+            (topics.CORRECTION, self._take_correction),
+        ):
+            kind, profile = message_class(topic.type_name), profile_of(topic, _NEWEST)
+            profile.durability = DurabilityPolicy.VOLATILE
+            node.create_subscription(kind, topic.name, take, profile)
+
+    def _take_scan(self, message: Any) -> None:
+        with suppress(Refusal):
+            self._backlog.scanned(link_decoding.scan_beams(message))
+
+    def _take_correction(self, message: Any) -> None:
+        with suppress(Refusal):
+            self._backlog.corrected(link_decoding.correction(message).stamp_ns)
+            self._news += 1
+
+    def _is_graph_behind(self) -> bool:
+        listens = self._node.count_publishers(topics.CORRECTION.name) > 0
+        return self._backlog.is_too_long and bool(listens)
 
     def _has_settled(self) -> bool:
         return bool(self._node.count_publishers(topics.SETTLED_ODOMETRY.name) > 0)
@@ -122,7 +153,7 @@ class Flow:
 
     def _is_free(self) -> bool:
         if self._has_settled():
-            return not self._lead.is_too_long
+            return not (self._lead.is_too_long or self._is_graph_behind())
         return not self._output.is_full or self._is_acknowledged()
 
     def _is_acknowledged(self) -> bool:
@@ -158,6 +189,7 @@ class Flow:
             self._spin(0.05)
         self._members = self._audience.members()
         self._lead.release()
+        self._backlog.restart()
         self._is_impatient = True
 
     def _is_renewed(self) -> bool:

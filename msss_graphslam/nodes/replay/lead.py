@@ -8,8 +8,9 @@ from statistics import median_low
 
 __all__ = ["Lead", "header_stamp_ns"]
 
-# One second of sensor time, less the batch that is sent before the next look.
-_LIMIT_NS = 900_000_000
+# With the batch that is sent before the next look less than half a second, after which dead
+# reckoning would take beams that came first for a sign that the IMU has gone.
+_LIMIT_NS = 300_000_000
 _OFFSETS = 15
 # Dead reckoning tells of its progress ten times a second, behind its window for late data.
 _REPORT_NS = 500_000_000

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fields that many messages share to numbers; what cannot be used raises Refusal."""
+
+from math import asin, atan2, copysign, hypot, isfinite, pi, remainder
+from typing import Any
+
+import numpy as np
+
+from msss_graphslam.core.types import Array
+from msss_graphslam.messages.refusal import Refusal
+
+__all__ = ["angles_of", "numbers", "pose_of", "stamp_of", "vector_of"]
+
+_NANOSECONDS = 1_000_000_000
+_SHORTEST_QUATERNION = 1e-3
+# Sine of the pitch from where on roll and yaw are one rotation: all of it is given to yaw.
+_VERTICAL = 1.0 - 1e-10
+
+
+def stamp_of(message: Any, name: str) -> int:
+    """Return the stamp [ns] of the header; ``name`` is for the refusal."""
+    stamp = message.header.stamp
+    if stamp.sec < 0 or not 0 <= stamp.nanosec < _NANOSECONDS:
+        raise Refusal(f"{name}_stamp_invalid")
+    return int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec)
+
+
+def pose_of(position: Any, orientation: Any, name: str) -> Array:
+    """Return x, y, z, roll, pitch, yaw (6,) [m, rad]; ``name`` is for the refusal."""
+    place = vector_of(position, f"{name}_not_finite")
+    return np.concatenate([place, angles_of(orientation, name)])
+
+
+def angles_of(quaternion: Any, name: str) -> Array:
+    """Return roll, pitch, yaw (3,) [rad] of a quaternion of any length."""
+    values = float(quaternion.x), float(quaternion.y), float(quaternion.z), float(quaternion.w)
+    length = hypot(*values)
+    if not isfinite(length):
+        raise Refusal(f"{name}_not_finite")
+    if length < _SHORTEST_QUATERNION:
+        raise Refusal(f"{name}_quaternion_zero")
+    x, y, z, w = (value / length for value in values)
+    sine = 2.0 * (w * y - z * x)
+    if abs(sine) > _VERTICAL:
+        return np.array([0.0, copysign(pi / 2.0, sine), remainder(2.0 * atan2(z, w), 2.0 * pi)])
+    roll = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    yaw = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return np.array([roll, asin(sine), yaw])
+
+
+def vector_of(values: Any, reason: str) -> Array:
+    """Return x, y, z (3,); ``reason`` is the refusal of what is not finite."""
+    components = float(values.x), float(values.y), float(values.z)
+    if not all(map(isfinite, components)):
+        raise Refusal(reason)
+    return np.array(components)
+
+
+def numbers(values: Any) -> Array:
+    """Return the numbers, whatever kind of sequence holds them; not checked."""
+    return np.asarray(values, dtype=np.float64)
