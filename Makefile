@@ -55,8 +55,9 @@ lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(STAMP) ## milliseconds a scan by stage, for every estimator
+bench: $(STAMP) ## milliseconds a scan by stage, for every estimator; cost of the live nodes
 	$(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m benchmarks.live
 
 reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
 	$(BIN)/python -m benchmarks.reproduce $(OPTIONS)

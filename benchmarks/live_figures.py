@@ -10,7 +10,14 @@ import numpy as np
 
 from msss_graphslam.core.types import Array
 
-__all__ = ["Percentiles", "answer_times", "lost_messages", "percentiles", "turn_times"]
+__all__ = [
+    "Percentiles",
+    "answer_times",
+    "complete_at",
+    "lost_messages",
+    "percentiles",
+    "turn_times",
+]
 
 _LOST = "lost/"
 
@@ -49,6 +56,20 @@ def answer_times(
     return np.array(times, dtype=float)
 
 
+def complete_at(asked: Mapping[int, int], others: Mapping[int, int]) -> dict[int, int]:
+    """Return when all that answers an input was sent: it, and the next of the ``others``.
+
+    Both have times of sending [ns] by stamp [ns]. An input after the last other is left out.
+    """
+    stamps = sorted(others)
+    complete = {}
+    for stamp, at in asked.items():
+        row = bisect_left(stamps, stamp)
+        if row < len(stamps):
+            complete[stamp] = max(at, others[stamps[row]])
+    return complete
+
+
 def turn_times(
     last_beams: Mapping[int, int],
     asked: Mapping[int, int],
@@ -66,5 +87,7 @@ def turn_times(
 
 def lost_messages(rows: Mapping[str, Mapping[str, str]]) -> int:
     """Return how many messages the nodes say they have lost, by their last diagnostics."""
-    values = [value for row in rows.values() for key, value in row.items() if key.startswith(_LOST)]
+    values = [
+        value for row in rows.values() for key, value in row.items() if key.startswith(_LOST)
+    ]
     return sum(int(value) for value in values)

@@ -3,8 +3,6 @@
 """The measurements of ``python -m benchmarks.live``: real processes over real DDS."""
 
 import filecmp
-import os
-import signal
 import subprocess
 import sys
 from contextlib import suppress
@@ -14,8 +12,14 @@ from typing import Any
 
 from rclpy.serialization import deserialize_message
 
-from benchmarks.live_figures import answer_times, lost_messages, percentiles, turn_times
-from benchmarks.live_nodes import LiveNodes, running
+from benchmarks.live_figures import (
+    answer_times,
+    complete_at,
+    lost_messages,
+    percentiles,
+    turn_times,
+)
+from benchmarks.live_nodes import LiveNodes, replaying, running
 from benchmarks.live_probe import Arrivals
 from benchmarks.live_tables import Latency, NodeUsage, Replay, Traffic
 from benchmarks.live_usage import cpu_seconds, memory, nodes_of
@@ -34,12 +38,13 @@ _NOT_COUNTED = ("bag_replay",)
 _TRAJECTORY = "trajectory.tum"
 
 
-def at_real_time(bag: Path, scratch: Path, seconds: float) -> tuple[dict[str, NodeUsage], list[Latency]]:
+def at_real_time(
+    bag: Path, scratch: Path, seconds: float
+) -> tuple[dict[str, NodeUsage], list[Latency]]:
     """Replay at rate 1 for a time; return what the nodes use and how fast they answer."""
     with running(bag, 1.0, scratch / "real_time") as live:
         live.probe.listen(_PROBED)
-        live.listen_until(topics.ODOM.name)
-        live.listen_for(_SETTLING)
+        live.settle(topics.ODOM.name)
         usage = _usage(live, seconds)
         return usage, _prompt_latencies(live.probe.arrivals)
 
@@ -49,15 +54,10 @@ def bandwidth(bag: Path, scratch: Path, seconds: float) -> dict[str, Traffic]:
     heard = (*topics.INPUTS, *topics.OUTPUTS, *topics.LINKS, _DIAGNOSTICS)
     with running(bag, 1.0, scratch / "bandwidth") as live:
         live.probe.listen(heard)
-        live.listen_until(topics.ODOM.name)
-        live.listen_for(_SETTLING)
-        before = _traffic(live.probe.arrivals)
+        live.settle(topics.ODOM.name)
         live.listen_for(seconds)
-        after = _traffic(live.probe.arrivals)
-    return {
-        name: Traffic(now.messages - before[name].messages, now.size - before[name].size)
-        for name, now in after.items()
-    }
+        heard_of = live.probe.arrivals
+    return {name: Traffic(len(one.sizes), sum(one.sizes)) for name, one in heard_of.items()}
 
 
 def replay(bag: Path, rate: float, scratch: Path, reference: Path) -> Replay:
@@ -97,22 +97,17 @@ def late_keyframes(
     with running(None, 1.0, scratch / "late") as live:
         live.probe.listen([topics.SCAN_BEAMS], lambda data: _note_turn(last_beams, data))
         live.probe.listen([topics.SONAR_PING, topics.KEYFRAMES])
-        with _bag_replay(bag, 0.0, 0.0):
+        with replaying(bag, 0.0, 0.0):
             while len(last_beams) < turns:
                 live.listen_for(0.1)
         ping = live.probe.arrivals[topics.SONAR_PING.name]
         offset = 1e-9 * (ping.stamps[-1] - open_recording(bag).start_ns)
         live.listen_for(_SETTLING)
-        ping.stamps.clear()
-        ping.sent.clear()
-        with _bag_replay(bag, 1.0, offset):
-            live.listen_until(topics.SONAR_PING.name)
-            live.listen_for(_SETTLING)
+        ping.clear()
+        with replaying(bag, 1.0, offset):
+            live.settle(topics.SONAR_PING.name)
             usage = _usage(live, seconds)
-        graphs = live.probe.arrivals[topics.KEYFRAMES.name]
-        times = turn_times(last_beams, _asked(ping), graphs.stamps, graphs.received)
-    name = f"last beam of a turn, graph/keyframes (turn {turns} on)"
-    return usage, [Latency(name, percentiles(times), p99_bar=0.5)]
+        return usage, _turn_latencies(live.probe.arrivals, last_beams)
 
 
 def _usage(live: LiveNodes, seconds: float) -> dict[str, NodeUsage]:
@@ -134,22 +129,39 @@ def _usage(live: LiveNodes, seconds: float) -> dict[str, NodeUsage]:
 def _prompt_latencies(arrivals: dict[str, Arrivals]) -> list[Latency]:
     odom, pose = arrivals[topics.ODOM.name], arrivals[topics.POSE.name]
     beams, imu = (_asked(arrivals[topic.name]) for topic in (topics.SONAR_PING, topics.IMU))
-    times = percentiles(answer_times(beams, odom.stamps, odom.received))
-    poses = percentiles(answer_times(imu, pose.stamps, pose.received))
-    odometry = percentiles(answer_times(imu, odom.stamps, odom.received))
+    both = complete_at(beams, imu)
     return [
-        Latency("beam, odom not older than it", times, 0.005, 0.025),
-        Latency("imu/data, its odom", odometry),
-        Latency("imu/data, its pose", poses, 0.020),
+        Latency(
+            "beam and the IMU sample due with it, odom",
+            percentiles(answer_times(both, odom.stamps, odom.received)),
+            median_bar=0.005,
+            p99_bar=0.025,
+        ),
+        Latency(
+            "imu/data, its pose",
+            percentiles(answer_times(imu, pose.stamps, pose.received)),
+            median_bar=0.020,
+        ),
+        Latency(
+            "beam, odom not older, waiting for the IMU included",
+            percentiles(answer_times(beams, odom.stamps, odom.received)),
+        ),
     ]
+
+
+def _turn_latencies(arrivals: dict[str, Arrivals], last_beams: dict[int, int]) -> list[Latency]:
+    sent = _asked(arrivals[topics.SONAR_PING.name])
+    bars = {topics.SCAN_BEAMS.name: None, topics.KEYFRAMES.name: 0.5}
+    latencies = []
+    for name, bar in bars.items():
+        answers = arrivals[name]
+        times = turn_times(last_beams, sent, answers.stamps, answers.received)
+        latencies.append(Latency(f"last beam of a turn, {name}", percentiles(times), p99_bar=bar))
+    return latencies
 
 
 def _asked(arrivals: Arrivals) -> dict[int, int]:
     return dict(zip(arrivals.stamps, arrivals.sent, strict=True))
-
-
-def _traffic(arrivals: dict[str, Arrivals]) -> dict[str, Traffic]:
-    return {name: Traffic(len(one.sizes), sum(one.sizes)) for name, one in arrivals.items()}
 
 
 def _note(rows: dict[str, dict[str, str]], data: bytes) -> None:
@@ -163,7 +175,3 @@ def _note_turn(last_beams: dict[int, int], data: bytes) -> None:
     with suppress(Refusal):
         scan = link_decoding.scan_beams(message)
         last_beams[scan.stamp_ns] = int(scan.beam_stamps_ns[-1])
-
-
-class _bag_replay:
-    """A replay of its own, ended at the exit."""

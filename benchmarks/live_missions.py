@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The missions of ``make bench`` for the live nodes, made once and kept."""
 
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,6 +38,6 @@ def _world() -> World:
     )
 
 
-def _fast_imu() -> "patch[float]":
+def _fast_imu() -> AbstractContextManager[object]:
     # The worlds' IMU has 25 Hz, as the vehicle of the paper; only the cost is of interest here.
     return patch.object(inertial, "_IMU_PERIOD", _IMU_PERIOD)

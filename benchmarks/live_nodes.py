@@ -14,10 +14,11 @@ from time import monotonic
 
 from benchmarks.live_probe import Probe, probing
 
-__all__ = ["LiveNodes", "running"]
+__all__ = ["LiveNodes", "replaying", "running"]
 
 _LONGEST_END = 60.0
 _STEP = 0.2
+_SETTLING = 5.0
 
 
 class LiveNodes:
@@ -36,6 +37,13 @@ class LiveNodes:
         """Go on until something comes on the topic; RuntimeError if the nodes end before."""
         while not self.probe.arrivals[topic].stamps:
             self._listen()
+
+    def settle(self, topic: str) -> None:
+        """Go on until the topic speaks and the start is over; forget what came until then."""
+        self.listen_until(topic)
+        self.listen_for(_SETTLING)
+        for arrivals in self.probe.arrivals.values():
+            arrivals.clear()
 
     def listen_for(self, seconds: float) -> None:
         """Go on for a time; RuntimeError if the nodes end before."""
@@ -57,16 +65,32 @@ class LiveNodes:
 
 
 @contextmanager
-def running(bag: Path, rate: float, output: Path) -> Iterator[LiveNodes]:
-    """Replay the bag through the nodes, in a domain of their own; they are ended at the exit."""
+def running(bag: Path | None, rate: float, output: Path) -> Iterator[LiveNodes]:
+    """Run the nodes in a domain of their own, on the bag if there is one; end them at the exit."""
     os.environ["ROS_DOMAIN_ID"] = str(random.randrange(1, 100))  # noqa: S311 - no secret
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     command = [sys.executable, "-m", "msss_graphslam", "live", "--quiet"]
-    command += ["--replay", str(bag), "--rate", f"{rate:g}", "--out", str(output)]
+    command += ["--out", str(output)]
+    if bag is not None:
+        command += ["--replay", str(bag), "--rate", f"{rate:g}"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)  # noqa: S603
     try:
         with probing() as probe:
             yield LiveNodes(process, probe)
+    finally:
+        _end(process)
+
+
+@contextmanager
+def replaying(bag: Path, rate: float, start: float) -> Iterator[None]:
+    """Replay the bag from ``start`` [s] on into nodes that run; the replay ends at the exit."""
+    values = {"bag": bag, "rate": rate, "start_offset": start, "conclude": "false"}
+    command = [sys.executable, "-m", "msss_graphslam.nodes.bag_replay", "--ros-args"]
+    for name, value in values.items():
+        command += ["-p", f"{name}:={value}"]
+    process = subprocess.Popen(command)  # noqa: S603
+    try:
+        yield
     finally:
         _end(process)
 

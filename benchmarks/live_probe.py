@@ -32,6 +32,11 @@ class Arrivals:
     received: list[int] = field(default_factory=list)
     sizes: list[int] = field(default_factory=list)
 
+    def clear(self) -> None:
+        """Forget what has come so far."""
+        for values in (self.stamps, self.sent, self.received, self.sizes):
+            values.clear()
+
 
 class Probe:
     """Listens to topics without decoding them; ``arrivals`` by the topic's name."""

@@ -77,7 +77,7 @@ class Traffic:
     size: int
 
 
-def usage_table(usage: Mapping[str, NodeUsage]) -> Table:
+def usage_table(title: str, usage: Mapping[str, NodeUsage]) -> Table:
     """Return a row a node, and the sum of those that count with the bars beside it."""
     counted = [node for node in usage.values() if node.counted]
     cpu = sum(node.cpu for node in counted)
@@ -106,10 +106,10 @@ def usage_table(usage: Mapping[str, NodeUsage]) -> Table:
         f"RSS [MiB] (≤ {MEMORY_BAR:g})",
         f"PSS [MiB] (≤ {MEMORY_BAR:g})",
     ]
-    return Table("At real time: CPU and memory", header, rows)
+    return Table(title, header, rows)
 
 
-def latency_table(latencies: Sequence[Latency]) -> Table:
+def latency_table(title: str, latencies: Sequence[Latency]) -> Table:
     """Return a row a latency, with its bars."""
     rows = [
         [
@@ -120,7 +120,7 @@ def latency_table(latencies: Sequence[Latency]) -> Table:
         ]
         for latency in latencies
     ]
-    return Table("Latency", ["from, to", "number", "median [ms]", "p99 [ms]"], rows)
+    return Table(title, ["from, to", "number", "median [ms]", "p99 [ms]"], rows)
 
 
 def replay_table(replays: Sequence[Replay]) -> Table:

@@ -19,7 +19,10 @@ SLAM_NODES = ("dead_reckoning", "scan_generation", "front_end", "back_end")
 REPLAY = "bag_replay"
 RECORDER = "bag_recorder"
 
-_Value = str | float | bool
+_Value = str | float | bool | list[str]
+
+_FED = ("dead_reckoning", "scan_generation")
+"""The nodes that the replay feeds, and waits for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,8 @@ def _parameters(name: str, setup: Setup) -> dict[str, _Value]:
             values["recording"] = str(setup.replay.resolve())
     if name == REPLAY and setup.replay is not None:
         values |= {"bag": str(setup.replay.resolve()), "rate": setup.rate, "conclude": False}
+        if setup.record is not None:
+            values["wait_for"] = [*_FED, RECORDER]
     if name == RECORDER and setup.record is not None:
         values["output"] = str(setup.record.resolve())
     return values

@@ -85,7 +85,8 @@ class DeadReckoningNode(SlamNode):
         self.listen(topics.IMU, decoding.inertial, self._take, required=True)
         self.listen(topics.PRESSURE, lambda m: decoding.depth(m, sensors), self._take)
         self.listen(topics.DVL, decoding.body_velocity, self._take)
-        self.listen(topics.SONAR_PING, decoding.beam, self._take, single=True)
+        # Scan generation counts what is wrong with a beam; once is enough.
+        self.listen(topics.SONAR_PING, decoding.beam, self._take, single=True, shared=True)
         self.listen(
             topics.CORRECTION, link_decoding.correction, self._take_correction, ordered=False
         )

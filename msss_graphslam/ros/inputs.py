@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One input of a node: from the middleware's message to a record in order."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import monotonic
@@ -40,13 +41,15 @@ class Rules:
     """What is asked of an input.
 
     ``ordered``: its stamps increase. ``single``: it has one publisher. ``required``: silence is an
-    error. ``pausable``: what comes while the node pauses is dropped and counted.
+    error. ``pausable``: what comes while the node pauses is dropped and counted. ``shared``:
+    another node hears the same and counts what is refused of it; this one only shows how many.
     """
 
     ordered: bool = True
     single: bool = False
     required: bool = False
     pausable: bool = True
+    shared: bool = False
 
 
 class Input:
@@ -71,6 +74,9 @@ class Input:
         self._diagnostics = diagnostics
         self._faults = faults
         self._is_paused = is_paused
+        self._refused: Counter[str] = Counter() if rules.shared else diagnostics.refused
+        if rules.shared:
+            diagnostics.values[f"not_used/{topic.name}"] = self._refused.total
         self._watch = diagnostics.input(topic.name)
         self._stamps = StampWatch(topic.name)
         self._misfit = ""
@@ -97,7 +103,7 @@ class Input:
             stamp_ns = getattr(record, "stamp_ns", None)
             self._check(stamp_ns)
         except Refusal as refusal:
-            self._diagnostics.refused[refusal.reason] += 1
+            self._refused[refusal.reason] += 1
             self._watch.seen()
             return
         self._watch.seen(stamp_ns)

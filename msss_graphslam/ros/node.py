@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What all nodes are: parameters, diagnostics, inputs, outputs, and three services."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.timer import Timer
+from rclpy.waitable import Waitable
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.messages.topics import Topic
@@ -25,12 +26,17 @@ __all__ = ["SlamNode", "run"]
 _TRIGGER = "std_srvs/srv/Trigger"
 _SET_BOOL = "std_srvs/srv/SetBool"
 
+# The middleware's events are looked for in one of so many pulses, ten a second.
+_EVENT_PULSES = 5
+
 
 class SlamNode(Node):
     """A node with the package's manners; no input makes it end.
 
     A derived class overrides ``on_reset``, ``on_save``, ``on_parameters`` and ``on_shutdown``.
     """
+
+    _pulses = 0
 
     def __init__(
         self, name: str, groups: Sequence[str] = (), changeable: Sequence[str] = ()
@@ -51,6 +57,19 @@ class SlamNode(Node):
         self.create_service(message_class(_TRIGGER), "~/reset", self._reset)
         self.create_service(message_class(_TRIGGER), "~/save", self._save)
         self.create_service(message_class(_SET_BOOL), "~/pause", self._pause)
+
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        """The middleware's events, now and then.
+
+        rclpy takes everything that can happen in hand again for each message; events (lost,
+        incompatible QoS) are most of it, and may wait.
+        """
+        yield from () if self._pulses % _EVENT_PULSES else super().waitables
+
+    def pulse(self) -> None:
+        """Note that another tenth of a second has gone by."""
+        self._pulses += 1
 
     def log(self, text: str) -> None:
         """Tell what may interest a person."""
@@ -74,9 +93,10 @@ class SlamNode(Node):
         single: bool = False,
         required: bool = False,
         pausable: bool = True,
+        shared: bool = False,
     ) -> Input:
         """Subscribe: messages are decoded to records, checked, and taken; see Rules."""
-        rules = Rules(ordered=ordered, single=single, required=required, pausable=pausable)
+        rules = Rules(ordered, single, required, pausable, shared)
         subscribed = Input(
             self,
             topic,

@@ -56,7 +56,7 @@ def _spin(node: Any, stop: _Stop) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     # A signal cannot wake the middleware's wait; a timer does.
-    node.every(_PULSE, lambda: None)
+    node.every(_PULSE, node.pulse)
     while not stop.asked:
         try:
             executor.spin_once()

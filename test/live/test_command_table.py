@@ -46,6 +46,7 @@ def test_the_replay_comes_last_and_runs_once(tmp_path: Path) -> None:
         "bag": str(tmp_path / "123"),
         "rate": 20.0,
         "conclude": False,
+        "wait_for": ["dead_reckoning", "scan_generation", "bag_recorder"],
     }
     assert own_parameters(tmp_path, "bag_recorder")["output"] == str(tmp_path / "new")
     assert own_parameters(tmp_path, "back_end")["recording"] == str(tmp_path / "123")

@@ -7,7 +7,11 @@ from functools import reduce
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from msss_graphslam.messages.columns import BEAMS, POSES, SETTLED
+from msss_graphslam.messages.topics import LINKS, OUTPUTS, Topic
 
 ROOT = Path(__file__).parents[2]
 PAPER_TO_CODE = (ROOT / "docs" / "paper_to_code.md").read_text(encoding="utf-8")
@@ -72,3 +76,37 @@ def test_links_to_files_lead_somewhere(document: str) -> None:
     path = ROOT / document
     targets = re.findall(r"\]\((?!https?:)([^)#]+)", path.read_text(encoding="utf-8"))
     assert [target for target in targets if not (path.parent / target).exists()] == []
+
+
+def assert_in_table(topic: Topic, section: str) -> None:
+    """Assert that one row names topic, type and delivery."""
+    kind = topic.type_name.replace("/msg/", "/")
+    named = re.compile(rf"`/?{topic.name}`.*`{kind}`")
+    rows = [line for line in section.splitlines() if named.search(line)]
+    assert len(rows) == 1
+    assert ("latched" in rows[0] or "deep" in rows[0]) == topic.latched
+
+
+@pytest.mark.parametrize("topic", OUTPUTS, ids=lambda topic: topic.label)
+def test_every_output_stands_in_the_readme(topic: Topic) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert_in_table(topic, text.partition("## On a vehicle")[2].partition("\n## ")[0])
+
+
+@pytest.mark.parametrize("topic", LINKS, ids=lambda topic: topic.label)
+def test_every_link_of_the_nodes_is_explained(topic: Topic) -> None:
+    text = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+    assert_in_table(topic, text.partition("## Links between the nodes")[2].partition("\n## ")[0])
+
+
+@pytest.mark.parametrize(
+    ("name", "layout"),
+    [("odom/settled", SETTLED), ("scan/beams", BEAMS), ("graph/poses", POSES)],
+)
+def test_every_column_of_a_link_is_explained(name: str, layout: np.dtype[np.void]) -> None:
+    text = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+    row = re.findall(rf"^\| `{name}` \|.* stamp, (.*) \|", text, re.MULTILINE)[0]
+    named = re.findall(r"`(\w+)`(?: \((\d+)\))?", row)
+    told = {column: int(count or 1) for column, count in named}
+    columns = [column for column in layout.names or () if column not in ("sec", "nanosec")]
+    assert told == {column: int(np.prod(layout[column].shape)) for column in columns}

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hears what the nodes publish: diagnostics, keyframes, and every number that is not finite."""
 
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -22,21 +21,26 @@ _WHOLE = ("std_msgs", "builtin_interfaces", "diagnostic_msgs")
 
 
 class Witness(TestNode):
-    """A node of the test that follows the diagnostics, and, if asked to, every output."""
+    """A node of the test that follows the diagnostics, and looks at what is ``checked``.
 
-    def __init__(self, of: Domain, namespace: str = "/", *, outputs: bool = False) -> None:
+    ``missing`` are the checked topics without a message so far, ``offences`` the places of
+    numbers that are not finite.
+    """
+
+    def __init__(
+        self, of: Domain, namespace: str = "/", *, checked: Iterable[topics.Topic] = ()
+    ) -> None:
         super().__init__(of, "witness", namespace)
         self.rows: dict[str, dict[str, str]] = {}
         self.messages: dict[str, str] = {}
-        self.heard: Counter[str] = Counter()
         self.keyframes = 0
         self.offences: list[str] = []
         self._namespace = namespace.rstrip("/")
         self._subscribe(_DIAGNOSTICS, self._diagnosed)
         self._subscribe(topics.KEYFRAMES, self._updated)
-        if outputs:
-            for topic in (*topics.OUTPUTS, *topics.LINKS):
-                self._subscribe(topic, lambda message, name=topic.name: self._check(name, message))
+        self.missing = {topic.name for topic in checked if available(topic.type_name)}
+        for topic in checked:
+            self._subscribe(topic, lambda message, name=topic.name: self._check(name, message))
 
     def row(self, node: str, key: str) -> float:
         """The number under the key of a node's diagnostics; 0 where there is none."""
@@ -83,7 +87,7 @@ class Witness(TestNode):
         self.keyframes = len(message.poses)
 
     def _check(self, name: str, message: Any) -> None:
-        self.heard[name] += 1
+        self.missing.discard(name)
         self.offences += [f"{name}: {place}" for place in not_finite(message)]
 
 

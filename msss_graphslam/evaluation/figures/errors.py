@@ -50,7 +50,9 @@ def corrections(assessments: Sequence[Assessment]) -> Plate:
             (estimate.online, f"{label(run.estimator)}, online", ":"),
         ):
             reckoned = estimate.dead_reckoning
-            rows = np.searchsorted(reckoned.stamps_ns, path.stamps_ns)
+            # What was heard live may be stamped after the last beam.
+            last = len(reckoned.stamps_ns) - 1
+            rows = np.minimum(np.searchsorted(reckoned.stamps_ns, path.stamps_ns), last)
             difference = path.planar - reckoned.planar[rows]
             time = minutes(path.stamps_ns, run.record.bag.start_ns)
             shade = colour(run.estimator)

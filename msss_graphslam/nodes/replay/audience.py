@@ -18,6 +18,7 @@ _LISTENS_TO = {
         topic.name for topic in (topics.SONAR_PING, topics.IMU, topics.PRESSURE, topics.DVL)
     ),
     "scan_generation": (topics.SONAR_PING.name,),
+    "bag_recorder": tuple(topic.name for topic in topics.INPUTS),
 }
 
 

@@ -121,13 +121,14 @@ class Flow:
         self._follow_graph(node)
 
     def _follow_graph(self, node: Node) -> None:
-        """Hear of scans and corrections from now on, not of those that are kept."""
+        """Hear of scans from now on; of corrections the newest, which may be out already."""
         for topic, take in (
             (topics.SCAN_BEAMS, self._take_scan),
             (topics.CORRECTION, self._take_correction),
         ):
             kind, profile = message_class(topic.type_name), profile_of(topic, _NEWEST)
-            profile.durability = DurabilityPolicy.VOLATILE
+            if topic is topics.SCAN_BEAMS:
+                profile.durability = DurabilityPolicy.VOLATILE
             node.create_subscription(kind, topic.name, take, profile)
 
     def _take_scan(self, message: Any) -> None:
@@ -150,9 +151,10 @@ class Flow:
         stamp_ns = header_stamp_ns(data)
         if stamp_ns is not None and self._lead.settled(stamp_ns):
             self._news += 1
+            self._is_impatient = False
 
     def _is_free(self) -> bool:
-        if self._has_settled():
+        if self._has_settled() and not self._is_impatient:
             return not (self._lead.is_too_long or self._is_graph_behind())
         return not self._output.is_full or self._is_acknowledged()
 
