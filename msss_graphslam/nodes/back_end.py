@@ -122,6 +122,7 @@ class BackEndNode(SlamNode):
     def _describe(self) -> None:
         values = self.diagnostics.values
         values["keyframes"] = lambda: len(self._mission.poses)
+        values["scans"] = lambda: self._mission.scans
         values["last_jump"] = lambda: self._mission.last_jump
         values["largest_jump"] = lambda: self._mission.largest_jump
         values["loop_closures"] = lambda: self._closures.accepted

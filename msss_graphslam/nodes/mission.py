@@ -63,6 +63,11 @@ class Mission:
         return sum(len(scan.beam_stamps_ns) for scan in self._scans.values())
 
     @property
+    def scans(self) -> int:
+        """How many scans have come, those that make no keyframe among them."""
+        return len(self._scans)
+
+    @property
     def newest_ns(self) -> int:
         """Stamp of the newest keyframe, 0 without any."""
         return self._reports[-1].stamp_ns if self._reports else 0

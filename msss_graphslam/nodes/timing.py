@@ -8,7 +8,7 @@ from time import monotonic
 __all__ = ["Stillness", "Throttle"]
 
 _LEISURE = 10.0
-_STILL = 0.25
+_STILL = 1.0
 _FORGOTTEN = 5.0
 
 

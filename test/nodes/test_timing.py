@@ -39,7 +39,7 @@ def test_long_work_is_done_more_rarely() -> None:
     throttle.ask()
     clock.now += 8.9
     assert not throttle.run(work)
-    clock.now += 0.2
+    clock.now += 0.8
     assert throttle.run(work)
 
 
@@ -47,7 +47,7 @@ def test_the_first_question_is_not_answered_with_yes() -> None:
     clock = Clock()
     still = Stillness(clock)
     assert not still.holds()
-    clock.now += 0.3
+    clock.now += 1.2
     assert still.holds()
 
 
@@ -55,9 +55,9 @@ def test_an_arrival_makes_the_question_new() -> None:
     clock = Clock()
     still = Stillness(clock)
     still.holds()
-    clock.now += 0.2
+    clock.now += 0.8
     still.stir()
-    clock.now += 0.2
+    clock.now += 0.8
     assert not still.holds()
     clock.now += 0.2
     assert still.holds()
