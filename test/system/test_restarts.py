@@ -17,7 +17,7 @@ _KEYFRAMES = 6
 
 
 # What a dead scan generation misses is lost, which the replay does not notice. A front end that
-# comes back lays the earlier scans out by the poses as they are by then: its edges differ a little.
+# comes back lays the earlier scans out by the poses of then: its edges differ a little.
 @pytest.mark.parametrize("name", ["dead_reckoning", "front_end"])
 def test_the_way_is_nearly_the_same(
     pond: Mission, own_domain: Domain, tmp_path: Path, name: str
