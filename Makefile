@@ -36,7 +36,10 @@ demo: $(STAMP) ## replay the sample bag through all nodes and show the result
 	$(BIN)/msss live --replay bags/pond --rate 0 --out demo
 
 test: $(STAMP) ## pass the tests
-	$(PYTEST) -n auto --dist worksteal $(TESTS)
+	$(PYTEST) -n auto --dist worksteal --ignore test/system $(TESTS)
+
+test-system: $(STAMP) ## pass the tests of the whole node graph, which want a quiet machine
+	$(PYTEST) -n auto --dist worksteal test/system
 
 # With wheels the environment is ROS's prefix too; a sourced ROS has said where it is.
 COLCON := . $(BIN)/activate && AMENT_PREFIX_PATH=$${AMENT_PREFIX_PATH:-$$VIRTUAL_ENV} \
