@@ -16,6 +16,7 @@ from msss_graphslam.core.types import Array
 __all__ = [
     "between",
     "between_covariance",
+    "carried_over",
     "compose",
     "compose_jacobians",
     "inverse",
@@ -25,6 +26,8 @@ __all__ = [
     "wrap",
     "wrap_angle",
 ]
+
+_PLANAR = [0, 1, 5]
 
 
 def wrap(angle: Array | float) -> Array:
@@ -113,6 +116,18 @@ def between_covariance(
         by_first @ first_covariance @ np.swapaxes(by_first, -1, -2)
         + by_second @ second_covariance @ np.swapaxes(by_second, -1, -2)
     )
+
+
+def carried_over(corrected: Array, reckoned: Array) -> Array:
+    """Return the pose(s) (..., 6) of ``odom`` in ``map`` that carry ``reckoned`` to ``corrected``.
+
+    Both are (..., 6) poses x, y, z, roll, pitch, yaw; dead reckoning's roll and pitch hold in
+    either frame.
+    """
+    placed = np.zeros(corrected.shape)
+    placed[..., _PLANAR] = compose(corrected[..., _PLANAR], inverse(reckoned[..., _PLANAR]))
+    placed[..., 2] = corrected[..., 2] - reckoned[..., 2]
+    return placed
 
 
 def transform_points(pose: Array, points: Array) -> Array:

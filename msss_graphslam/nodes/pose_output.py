@@ -2,17 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Odometry, corrected pose and both frames, published together."""
 
-import numpy as np
-
-from msss_graphslam.core.compounding import compose, inverse
+from msss_graphslam.core.compounding import carried_over
 from msss_graphslam.core.types import Array, Odometry
 from msss_graphslam.messages import encoding, frames, topics
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode
 
 __all__ = ["PoseOutput"]
-
-_PLANAR = [0, 1, 5]
 
 
 class PoseOutput:
@@ -44,18 +40,10 @@ class PoseOutput:
             return
         stamp_ns, transforms = odometry.stamp_ns, []
         if self._with_map:
-            placed = _odom_in_map(pose, odometry.pose)
+            placed = carried_over(pose, odometry.pose)
             transforms.append(encoding.transform(make, stamp_ns, placed, self._map, self._odom))
         if self._with_odom:
             transforms.append(
                 encoding.transform(make, stamp_ns, odometry.pose, self._odom, self._base)
             )
         self._transforms.publish(encoding.tf_message(make, transforms))
-
-
-def _odom_in_map(corrected: Array, reckoned: Array) -> Array:
-    """Return what carries the reckoned pose (6,) over to the corrected one (6,)."""
-    placed = np.zeros(6)
-    placed[_PLANAR] = compose(corrected[_PLANAR], inverse(reckoned[_PLANAR]))
-    placed[2] = corrected[2] - reckoned[2]
-    return placed

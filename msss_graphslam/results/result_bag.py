@@ -14,7 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from msss_graphslam.core.compounding import compose, compose_jacobians, inverse, wrap
+from msss_graphslam.core.compounding import (
+    carried_over,
+    compose,
+    compose_jacobians,
+    inverse,
+    wrap,
+)
 from msss_graphslam.core.types import Array, Estimate, Keyframe, Odometry, Stamps, Trajectory
 from msss_graphslam.messages import encoding
 from msss_graphslam.recordings.typestore import make
@@ -58,7 +64,7 @@ def _moving(estimate: Estimate) -> Iterator[_Message]:
     """Yield dead reckoning, the corrected pose where its covariance is known, and both frames."""
     covariances = _beam_covariances(estimate.keyframes)
     twists = _twists(estimate.dead_reckoning)
-    odom_in_map = _odom_in_map(estimate.trajectory.poses, estimate.dead_reckoning.poses)
+    odom_in_map = carried_over(estimate.trajectory.poses, estimate.dead_reckoning.poses)
     for row in _thinned_rows(estimate.trajectory.stamps_ns):
         stamp = int(estimate.trajectory.stamps_ns[row])
         corrected = estimate.trajectory.poses[row]
@@ -100,14 +106,6 @@ def _beam_covariances(keyframes: tuple[Keyframe, ...]) -> dict[int, Array]:
         spread += by_motion @ scan.motion_covariances @ np.swapaxes(by_motion, -1, -2)
         covariances.update(zip(scan.beam_stamps_ns.tolist(), spread, strict=True))
     return covariances
-
-
-def _odom_in_map(corrected: Array, reckoned: Array) -> Array:
-    """Return what carries each dead-reckoned pose (n, 6) over to the corrected one (n, 6)."""
-    poses = np.zeros(corrected.shape)
-    poses[:, _PLANAR] = compose(corrected[:, _PLANAR], inverse(reckoned[:, _PLANAR]))
-    poses[:, 2] = corrected[:, 2] - reckoned[:, 2]
-    return poses
 
 
 def _twists(trajectory: Trajectory) -> Array:

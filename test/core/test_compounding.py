@@ -9,6 +9,7 @@ from numerical_derivatives import jacobian
 from msss_graphslam.core.compounding import (
     between,
     between_covariance,
+    carried_over,
     compose,
     compose_jacobians,
     inverse,
@@ -118,3 +119,13 @@ def test_points_are_transformed_by_one_pose_or_by_one_each() -> None:
         expected = homogeneous(frame) @ np.append(point, 1.0)
         np.testing.assert_allclose(placed, expected[:2], atol=1e-12)
         np.testing.assert_allclose(transform_points(frame, point[None])[0], placed, atol=1e-15)
+
+
+@given(poses, poses)
+def test_what_is_carried_over_is_the_corrected_pose(corrected: Array, reckoned: Array) -> None:
+    def spatial(planar: Array, z: float) -> Array:
+        return np.array([planar[0], planar[1], z, 0.1, -0.2, wrap(planar[2])])
+
+    placed = carried_over(spatial(corrected, -3.0), spatial(reckoned, -2.0))
+    assert_same_pose(compose(placed[[0, 1, 5]], reckoned), corrected, 1e-6)
+    np.testing.assert_allclose(placed[[2, 3, 4]], [-1.0, 0.0, 0.0])
