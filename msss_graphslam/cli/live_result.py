@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What live nodes left in a directory, shown as ``msss run`` shows its own."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from msss_graphslam.cli.console import Console
 from msss_graphslam.cli.exit_codes import ExitCode
-from msss_graphslam.cli.result_table import show_rows
+from msss_graphslam.cli.result_table import lost_data, show_runs
 from msss_graphslam.core.types import Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING
@@ -28,12 +26,11 @@ def show_result(console: Console, output: Path, replayed: Path | None) -> ExitCo
 
     def show() -> None:
         truth = truth_of(replayed) if replayed is not None else None
-        show_rows(console, _rows(directory, truth, summary["configuration"]["estimator"]))
-        console.line(_effort(summary))
-        console.line(f"report: {output / 'report.html'}")
+        rows = _rows(directory, truth, summary["configuration"]["estimator"])
+        show_runs(console, rows, [summary], output / "report.html")
 
     console.result(summary, show)
-    return console.lost(_lost_data(summary))
+    return console.lost(lost_data(summary))
 
 
 def _rows(directory: ResultDirectory, truth: Trajectory | None, estimator: str) -> list[ResultRow]:
@@ -54,19 +51,3 @@ def _measured(directory: ResultDirectory, truth: Trajectory | None) -> list[Resu
             pass  # The truth does not cover the run: the report says so.
     corrected, online, dead_reckoning = directory.read_trajectories()
     return [ResultRow("", start_end_gap(each)) for each in (dead_reckoning, corrected, online)]
-
-
-def _effort(summary: Mapping[str, Any]) -> str:
-    loops = summary["loop_closures"]
-    return (
-        f"{summary['configuration']['estimator']}: {summary['beams']} beams,"
-        f" {summary['scans']} scans, {loops['accepted']} of {loops['tried']} loop closures"
-        f" accepted; {summary['duration_s']:.0f} s of mission in {summary['wall_s']:.1f} s,"
-        f" {summary['realtime_factor']:.0f} times real time"
-    )
-
-
-def _lost_data(summary: Mapping[str, Any]) -> str:
-    """Return in one line what was lost or refused, most frequent first; empty for nothing."""
-    refused = sorted(summary["refused"].items(), key=lambda entry: -entry[1])
-    return "; ".join([*(f"{count} x {reason}" for reason, count in refused), *summary["damage"]])

@@ -2,15 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The result of runs as a person reads it on the terminal."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from msss_graphslam.cli.console import Console
-from msss_graphslam.evaluation.assessment import assess
-from msss_graphslam.evaluation.result_table import ResultRow, result_table
-from msss_graphslam.results.record import RunRecord
+from msss_graphslam.evaluation.result_table import ResultRow
 
 __all__ = ["as_data", "lost_data", "show_rows", "show_runs"]
 
@@ -53,11 +51,16 @@ _COLUMNS = (
 )
 
 
-def show_runs(console: Console, records: Sequence[RunRecord], report: Path) -> None:
-    """Print the table of one or more estimators' runs of a bag, and what each took."""
-    show_rows(console, result_table([assess(record) for record in records]))
-    for record in records:
-        console.line(_effort(record))
+def show_runs(
+    console: Console,
+    rows: Sequence[ResultRow],
+    summaries: Iterable[Mapping[str, Any]],
+    report: Path,
+) -> None:
+    """Print the table of one or more runs over a bag, and what each took."""
+    show_rows(console, rows)
+    for summary in summaries:
+        console.line(_effort(summary))
     console.line(f"report: {report}")
 
 
@@ -78,17 +81,18 @@ def as_data(rows: Iterable[ResultRow]) -> dict[str, Any]:
     return table
 
 
-def lost_data(record: RunRecord) -> str:
-    """Return in one line what was lost or refused; empty where nothing was."""
-    refused = [f"{count} x {reason}" for reason, count in record.refused.most_common()]
-    return "; ".join([*refused, *record.bag.damage])
+def lost_data(summary: Mapping[str, Any]) -> str:
+    """Return in one line what was lost or refused, most frequent first; empty for nothing."""
+    refused = sorted(summary["refused"].items(), key=lambda entry: -entry[1])
+    return "; ".join([*(f"{count} x {reason}" for reason, count in refused), *summary["damage"]])
 
 
-def _effort(record: RunRecord) -> str:
+def _effort(summary: Mapping[str, Any]) -> str:
     """Return in one line what went into a run and what it took."""
+    loops = summary["loop_closures"]
     return (
-        f"{record.estimator}: {record.beams} beams, {len(record.estimate.keyframes)} scans,"
-        f" {record.accepted_loops} of {record.tried_loops} loop closures accepted;"
-        f" {record.bag.duration:.0f} s of mission in {record.cost.wall:.1f} s,"
-        f" {record.realtime_factor:.0f} times real time"
+        f"{summary['configuration']['estimator']}: {summary['beams']} beams,"
+        f" {summary['scans']} scans, {loops['accepted']} of {loops['tried']} loop closures"
+        f" accepted; {summary['duration_s']:.0f} s of mission in {summary['wall_s']:.1f} s,"
+        f" {summary['realtime_factor']:.0f} times real time"
     )

@@ -10,27 +10,13 @@ from typing import Any
 
 import pytest
 from command_line import Done, assert_one_line, msss
+from promised_files import RUN_FILES
 
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.simulation.recording import SimulatedBag
 
 pytestmark = pytest.mark.slow
 
-FILES = {
-    "constraints.csv",
-    "dead_reckoning.tum",
-    "figures",
-    "graph.g2o",
-    "keyframes.tum",
-    "map.pgm",
-    "map.ply",
-    "map.yaml",
-    "online.tum",
-    "report.html",
-    "result.mcap",
-    "summary.json",
-    "trajectory.tum",
-}
 NUMBERS = {
     "duration_s",
     "wall_s",
@@ -74,7 +60,7 @@ def test_progress_in_a_pipe_is_plain_lines(run: tuple[Path, Done]) -> None:
 
 def test_a_run_leaves_every_file(run: tuple[Path, Done]) -> None:
     out, _ = run
-    assert {path.name for path in out.iterdir()} == FILES
+    assert {path.name for path in out.iterdir()} == RUN_FILES
     assert list((out / "figures").glob("*.png"))
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from nodes.linked_nodes import scans_of
 from nodes.processes import Domain, TestNode, domain, wait_until
+from promised_files import RUN_FILES
 from rclpy.duration import Duration
 from small_mission import estimated, recorded
 
@@ -25,21 +26,6 @@ pytestmark = pytest.mark.slow
 
 TRIGGER = message_class("std_srvs/srv/Trigger")
 GET_MAP = message_class("nav_msgs/srv/GetMap")
-FILES = {
-    "trajectory.tum",
-    "online.tum",
-    "dead_reckoning.tum",
-    "keyframes.tum",
-    "graph.g2o",
-    "constraints.csv",
-    "map.ply",
-    "map.pgm",
-    "map.yaml",
-    "result.mcap",
-    "summary.json",
-    "report.html",
-    "figures",
-}
 
 
 @pytest.fixture
@@ -135,7 +121,7 @@ def test_both_nodes_write_what_the_offline_run_finds(at: Domain, tmp_path: Path)
         assert grid.info.width * grid.info.height == len(grid.data) > 100
         assert front.interrupt() == back.interrupt() == 0
     assert all(around.heard.values()), {name: len(all_) for name, all_ in around.heard.items()}
-    assert {path.name for path in output.iterdir()} == FILES
+    assert {path.name for path in output.iterdir()} == RUN_FILES
     directory = ResultDirectory(output)
     expected = estimated("full")
     corrected, online, reckoned = directory.read_trajectories()

@@ -4,24 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from promised_files import ESTIMATE_FILES
 from synthetic_run import synthetic_run, without_keyframes
 
 from msss_graphslam.errors import UserError
 from msss_graphslam.results.atomic import replacing
 from msss_graphslam.results.directory import ResultDirectory
-
-FILES = {
-    "trajectory.tum",
-    "online.tum",
-    "dead_reckoning.tum",
-    "keyframes.tum",
-    "graph.g2o",
-    "constraints.csv",
-    "map.ply",
-    "map.pgm",
-    "map.yaml",
-    "result.mcap",
-}
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +23,7 @@ def names(path):
 
 def test_a_run_leaves_the_promised_files_and_no_others(tmp_path, record):
     ResultDirectory.create(tmp_path / "a" / "b").write_estimate(record)
-    assert names(tmp_path / "a" / "b") == FILES
+    assert names(tmp_path / "a" / "b") == ESTIMATE_FILES
 
 
 def test_trajectories_are_read_back(tmp_path, record):
@@ -54,14 +42,14 @@ def test_trajectories_are_read_back(tmp_path, record):
 def test_a_second_run_leaves_the_same_bytes(tmp_path, record):
     for name in ("one", "other"):
         ResultDirectory.create(tmp_path / name).write_estimate(record)
-    for name in FILES:
+    for name in ESTIMATE_FILES:
         one, other = (tmp_path / run / name for run in ("one", "other"))
         assert one.read_bytes() == other.read_bytes(), name
 
 
 def test_less_than_a_turn_still_leaves_every_file(tmp_path, record):
     ResultDirectory.create(tmp_path).write_estimate(without_keyframes(record))
-    assert names(tmp_path) == FILES
+    assert names(tmp_path) == ESTIMATE_FILES
     assert (tmp_path / "keyframes.tum").read_text() == ""
 
 

@@ -29,15 +29,21 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:
     """Run the estimators and show one table."""
+    from msss_graphslam.evaluation.assessment import assess
+    from msss_graphslam.evaluation.result_table import result_table
     from msss_graphslam.offline import runner
 
     configuration = configuration_of(arguments)
     with console.progress() as progress:
         records = runner.compare(arguments.bag, arguments.out, configuration, progress)
-    data = {
+    summaries = {
         record.estimator: ResultDirectory(arguments.out / record.estimator).read_summary()
         for record in records
     }
-    report = arguments.out / "report.html"
-    console.result(data, lambda: show_runs(console, records, report))
-    return console.lost(lost_data(records[0]))
+
+    def show() -> None:
+        rows = result_table([assess(record) for record in records])
+        show_runs(console, rows, summaries.values(), arguments.out / "report.html")
+
+    console.result(summaries, show)
+    return console.lost(lost_data(summaries[records[0].estimator]))

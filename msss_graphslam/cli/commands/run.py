@@ -31,6 +31,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:
     """Run one estimator and show what came out."""
+    from msss_graphslam.evaluation.assessment import assess
+    from msss_graphslam.evaluation.result_table import result_table
     from msss_graphslam.offline import runner
 
     configuration = configuration_of(arguments)
@@ -40,5 +42,9 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
         )
     summary = ResultDirectory(arguments.out).read_summary()
     report = arguments.out / "report.html"
-    console.result(summary, lambda: show_runs(console, [record], report))
-    return console.lost(lost_data(record))
+
+    def show() -> None:
+        show_runs(console, result_table([assess(record)]), [summary], report)
+
+    console.result(summary, show)
+    return console.lost(lost_data(summary))
