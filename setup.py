@@ -14,6 +14,7 @@ NAME = "msss_graphslam"
 SHARE = f"share/{NAME}"
 ROOT = Path(__file__).parent
 NODES = (
+    "micron_driver",
     "dead_reckoning",
     "scan_generation",
     "front_end",
@@ -56,6 +57,7 @@ setup(
         "matplotlib",
         "mcap",
         "numpy",
+        "pyserial",
         "pyyaml",
         "rich",
         "rosbags",
@@ -67,6 +69,7 @@ setup(
     entry_points={
         "console_scripts": [
             "msss = msss_graphslam.cli.main:main",
+            "micron_emulator = msss_graphslam.simulation.emulator.main:main",
             *(f"{node} = msss_graphslam.nodes.{node}:main" for node in NODES),
         ]
     },

@@ -25,6 +25,7 @@ class Configuration:
     matching: groups.Matching = field(default_factory=groups.Matching)
     back_end: groups.BackEnd = field(default_factory=groups.BackEnd)
     mapping: groups.Mapping = field(default_factory=groups.Mapping)
+    micron: groups.Micron = field(default_factory=groups.Micron)
 
     @classmethod
     def parameters(cls) -> list[ParameterInfo]:

@@ -26,16 +26,14 @@ class ParameterInfo:
     unit: str
     minimum: float | None
     maximum: float | None
-    choices: tuple[str, ...]
+    choices: tuple[Any, ...]
     source: str
 
     def validate(self, value: Any) -> Any:
         """Return the value in the parameter's type, or raise ParameterError."""
         value = self._in_kind(value)
         if self.choices and value not in self.choices:
-            raise ParameterError(
-                f"{self.name} = {value!r}: must be one of {', '.join(self.choices)}"
-            )
+            raise ParameterError(f"{self.name} = {value!r}: must be one of {self.range_text}")
         below = self.minimum is not None and not value >= self.minimum
         above = self.maximum is not None and not value <= self.maximum
         if below or above or value != value:
@@ -46,7 +44,7 @@ class ParameterInfo:
     def range_text(self) -> str:
         """The admitted values in words."""
         if self.choices:
-            return ", ".join(self.choices)
+            return ", ".join(map(str, self.choices))
         if self.minimum is None and self.maximum is None:
             return ""
         low = "-inf" if self.minimum is None else f"{self.minimum:g}"
@@ -81,7 +79,7 @@ def parameter(
     unit: str = "",
     minimum: float | None = None,
     maximum: float | None = None,
-    choices: Sequence[str] = (),
+    choices: Sequence[Any] = (),
     source: str = "",
 ) -> Any:
     """Declare one field of a configuration group."""

@@ -48,8 +48,14 @@ class DeadReckoning:
         unit="s",
         minimum=0.01,
     )
+    drift_noise: float = parameter(
+        0.5,
+        "way that the vehicle drifts in a second, ahead or sideways, without any IMU or DVL",
+        unit="m/sqrt(s)",
+        minimum=0.0,
+    )
     turn_rate_noise: float = parameter(
-        0.05,
+        0.1,
         "angle that the vehicle turns in a second while no gyro speaks, standard deviation",
         unit="rad/sqrt(s)",
         minimum=1e-6,
