@@ -127,9 +127,9 @@ class TurnDetector:
         step = wrap_angle(reading.bearing - last.bearing)
         if reading.stamp_ns - last.stamp_ns > self._gap_ns:
             return self._drop("turn_dropped_for_a_gap", reading)
-        reversed_sweep = step * self._direction < 0.0
-        if abs(step) > JUMP and not reversed_sweep:
+        if abs(step) > JUMP:
             return self._drop("turn_dropped_for_a_bearing_jump", reading)
+        reversed_sweep = step * self._direction < 0.0
         self._least_step = min(self._least_step, abs(step) or FULL_TURN)
         whole = FULL_TURN - min(0.5 * self._least_step, JUMP)
         if reversed_sweep or self._swept + abs(step) > whole:

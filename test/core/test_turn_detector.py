@@ -120,7 +120,7 @@ def test_the_gap_from_both_sides(silence: int, dropped: int) -> None:
 
 
 @senses
-@pytest.mark.parametrize(("jump", "dropped"), [(0.49, 0), (0.51, 1), (2.0, 1)])
+@pytest.mark.parametrize(("jump", "dropped"), [(0.49, 0), (0.51, 1), (2.0, 1), (-0.51, 1)])
 def test_the_bearing_jump_from_both_sides(jump: float, dropped: int, sense: float) -> None:
     bearings = turning(200, 240)
     bearings[100:] += jump - 2.0 * np.pi / 240
