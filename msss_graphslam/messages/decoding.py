@@ -16,9 +16,20 @@ from msss_graphslam.config.groups import Sensors
 from msss_graphslam.core.types import Array, Beam, BodyVelocity, Depth, Inertial
 from msss_graphslam.messages.fields import angles_of, numbers, pose_of, stamp_of, vector_of
 from msss_graphslam.messages.hydrostatics import height_of
+from msss_graphslam.messages.raw_bytes import RawBytes, raw_bytes
 from msss_graphslam.messages.refusal import Refusal
 
-__all__ = ["TruePose", "beam", "body_velocity", "depth", "inertial", "placement", "true_pose"]
+__all__ = [
+    "RawBytes",
+    "TruePose",
+    "beam",
+    "body_velocity",
+    "depth",
+    "inertial",
+    "placement",
+    "raw_bytes",
+    "true_pose",
+]
 
 
 @dataclass(frozen=True, slots=True)

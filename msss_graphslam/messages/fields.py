@@ -10,7 +10,7 @@ import numpy as np
 from msss_graphslam.core.types import Array
 from msss_graphslam.messages.refusal import Refusal
 
-__all__ = ["angles_of", "numbers", "pose_of", "stamp_of", "vector_of"]
+__all__ = ["angles_of", "numbers", "pose_of", "stamp_of", "time_of", "vector_of"]
 
 _NANOSECONDS = 1_000_000_000
 _SHORTEST_QUATERNION = 1e-3
@@ -20,7 +20,12 @@ _VERTICAL = 1.0 - 1e-10
 
 def stamp_of(message: Any, name: str) -> int:
     """Return the stamp [ns] of the header; ``name`` is for the refusal."""
-    stamp = message.header.stamp
+    return time_of(message.header, name)
+
+
+def time_of(header: Any, name: str) -> int:
+    """Return the stamp [ns] of a std_msgs/Header; ``name`` is for the refusal."""
+    stamp = header.stamp
     if stamp.sec < 0 or not 0 <= stamp.nanosec < _NANOSECONDS:
         raise Refusal(f"{name}_stamp_invalid")
     return int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec)

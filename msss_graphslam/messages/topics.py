@@ -22,9 +22,13 @@ __all__ = [
     "PATH",
     "POSE",
     "PRESSURE",
+    "RAW_TAKEN",
+    "RECENT_BEAMS",
     "RECKONED_PATH",
     "SCAN",
+    "SCANS_TAKEN",
     "SCAN_BEAMS",
+    "SCAN_PROGRESS",
     "SETTLED_ODOMETRY",
     "SONAR_PING",
     "SONAR_RAW",
@@ -96,13 +100,27 @@ OUTPUTS = (
     TRANSFORMS,
 )
 
+RAW_TAKEN = Topic("sonar/taken", "std_msgs/msg/Header")
+RECENT_BEAMS = Topic("sonar/recent", "sensor_msgs/msg/LaserScan", latched=True)
 SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2", latched=True)
 SCAN_BEAMS = Topic("scan/beams", "sensor_msgs/msg/PointCloud2", latched=True)
+SCAN_PROGRESS = Topic("scan/progress", "std_msgs/msg/Header")
+SCANS_TAKEN = Topic("scan/taken", "std_msgs/msg/Header", latched=True)
 TRIED = Topic("graph/tried", "diagnostic_msgs/msg/DiagnosticArray", latched=True)
 GRAPH_POSES = Topic("graph/poses", "sensor_msgs/msg/PointCloud2", latched=True)
 CORRECTION = Topic("graph/correction", "nav_msgs/msg/Odometry", latched=True)
 
-LINKS = (SETTLED_ODOMETRY, SCAN_BEAMS, TRIED, GRAPH_POSES, CORRECTION)
+LINKS = (
+    RAW_TAKEN,
+    RECENT_BEAMS,
+    SETTLED_ODOMETRY,
+    SCAN_BEAMS,
+    SCAN_PROGRESS,
+    SCANS_TAKEN,
+    TRIED,
+    GRAPH_POSES,
+    CORRECTION,
+)
 """What the nodes tell each other, without loss."""
 
 

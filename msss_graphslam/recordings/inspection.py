@@ -66,7 +66,8 @@ class Lack:
 class InspectionReport:
     """All that ``inspect`` finds; ``can_run`` says whether an estimator could work on it.
 
-    ``problem`` is empty if so, else the reason in one line.
+    ``problem`` is empty if so, else the reason in one line. ``sonar_topic`` is what the beams were
+    read from: pings, or the bytes of the head's port where there are no pings.
     """
 
     path: str
@@ -74,6 +75,7 @@ class InspectionReport:
     duration: float
     topics: tuple[TopicReport, ...]
     sonar: SonarSettings | None
+    sonar_topic: str
     lacks: tuple[Lack, ...]
     refused: dict[str, int]
     damage: Damage
@@ -96,8 +98,9 @@ def inspect(path: Path | str, configuration: Configuration | None = None) -> Ins
     refused: Counter[str] = Counter()
     observer = SonarObserver()
     inertial: set[str] = set()
-    problem = ""
+    problem = sonar_topic = ""
     try:
+        sonar_topic = recording.sonar_topic.absolute
         for measurement in recording.measurements(refused, configuration or Configuration()):
             if isinstance(measurement, Beam):
                 observer.take(measurement)
@@ -117,6 +120,7 @@ def inspect(path: Path | str, configuration: Configuration | None = None) -> Ins
             for topic in recording.topics.values()
         ),
         sonar=settings,
+        sonar_topic=sonar_topic,
         lacks=tuple(lacks(recording, inertial)),
         refused=dict(refused),
         damage=recording.damage,

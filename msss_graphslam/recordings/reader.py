@@ -18,7 +18,8 @@ from msss_graphslam.recordings.damage import Damage
 from msss_graphslam.recordings.files import mcap_files
 from msss_graphslam.recordings.mcap_reading import McapContent, RawMessage, merge
 from msss_graphslam.recordings.mounting import Mounting
-from msss_graphslam.recordings.source import Record, Source
+from msss_graphslam.recordings.raw_sonar import RawSonar
+from msss_graphslam.recordings.source import AnySource, Given, Source
 from msss_graphslam.recordings.typestore import UndecodableError, decode
 
 _LOG_DELAY_NS = 2_000_000_000
@@ -107,8 +108,8 @@ class Recording:
         """
         self._require_sonar()
         sensors = configuration.sensors
-        sources: list[Source[Measurement]] = [
-            Source(topics.SONAR_PING, decoding.beam),
+        sources: list[AnySource[Measurement]] = [
+            self._sonar(configuration),
             Source(topics.IMU, decoding.inertial),
             Source(topics.PRESSURE, lambda message: decoding.depth(message, sensors)),
             Source(topics.DVL, decoding.body_velocity),
@@ -124,15 +125,19 @@ class Recording:
         stamps = np.array([pose.stamp_ns for pose in poses], dtype=np.int64)
         return Trajectory(stamps, np.array([pose.pose for pose in poses]))
 
-    def beams(self, start_ns: int, end_ns: int) -> Iterator[Beam]:
-        """Yield the beams logged between two times or shortly after, without counting refusals."""
-        source = Source(topics.SONAR_PING, decoding.beam)
-        recorded = self.find(topics.SONAR_PING)
-        span_ns = range(start_ns, end_ns + _LOG_DELAY_NS + 1)
+    def beams(
+        self, start_ns: int, end_ns: int, configuration: Configuration | None = None
+    ) -> Iterator[Beam]:
+        """Yield the beams logged between two times or shortly after, without counting refusals.
+
+        Raw bytes are read from the beginning: how long a reply took is known from those before it.
+        """
+        source = self._sonar(configuration or Configuration())
+        recorded = self.find(source.topic)
+        first_ns = self.start_ns if source.topic == topics.SONAR_RAW else start_ns
+        span_ns = range(first_ns, end_ns + _LOG_DELAY_NS + 1)
         for raw in self.messages([recorded.name] if recorded else [], span_ns):
-            beam = source.record_of(raw, Counter())
-            if beam is not None:
-                yield beam
+            yield from source.records_of(raw, Counter())
 
     def mounting(self) -> Mounting | None:
         """Return where the head sits, if the bag's static transforms say so."""
@@ -154,10 +159,21 @@ class Recording:
         mounting = self.mounting()
         return configuration if mounting is None else mounting.completes(configuration)
 
+    @property
+    def sonar_topic(self) -> Topic:
+        """Where the beams are: in pings, or only in the bytes of the head's port."""
+        has_raw_only = not self.find(topics.SONAR_PING) and self.find(topics.SONAR_RAW)
+        return topics.SONAR_RAW if has_raw_only else topics.SONAR_PING
+
+    def _sonar(self, configuration: Configuration) -> AnySource[Beam]:
+        if self.sonar_topic == topics.SONAR_RAW:
+            return RawSonar(configuration.micron)
+        return Source(topics.SONAR_PING, decoding.beam)
+
     def _records(
-        self, sources: Sequence[Source[Record]], refusals: Counter[str]
-    ) -> Iterator[Record]:
-        by_name: dict[str, Source[Record]] = {}
+        self, sources: Sequence[AnySource[Given]], refusals: Counter[str]
+    ) -> Iterator[Given]:
+        by_name: dict[str, AnySource[Given]] = {}
         for source in sources:
             recorded = self.find(source.topic)
             if recorded is None:
@@ -167,23 +183,22 @@ class Recording:
             else:
                 refusals[f"{source.topic.label}_wrong_type"] += recorded.count
         for raw in self.messages(by_name):
-            record = by_name[raw.channel.topic].record_of(raw, refusals)
-            if record is not None:
-                yield record
+            yield from by_name[raw.channel.topic].records_of(raw, refusals)
 
     def _require_sonar(self) -> None:
-        recorded = self.find(topics.SONAR_PING)
+        topic = self.sonar_topic
+        recorded = self.find(topic)
         if recorded is None:
             raise UserError(
-                f"{self.path}: no topic {topics.SONAR_PING.absolute}, only"
-                f" {', '.join(sorted(self.topics))}; rename the sonar's topic, or make the bag"
-                " by `msss convert`"
+                f"{self.path}: no topic {topics.SONAR_PING.absolute} or"
+                f" {topics.SONAR_RAW.absolute}, only {', '.join(sorted(self.topics))}; rename the"
+                " sonar's topic, or make the bag by `msss convert`"
             )
-        if recorded.type_name != topics.SONAR_PING.type_name:
+        if recorded.type_name != topic.type_name:
+            content = "one beam" if topic == topics.SONAR_PING else "the port's bytes"
             raise UserError(
                 f"{self.path}: {recorded.name} is of type {recorded.type_name}, must be"
-                f" {topics.SONAR_PING.type_name} with one beam a message; make the bag by"
-                " `msss convert`"
+                f" {topic.type_name} with {content} a message; make the bag by `msss convert`"
             )
 
 

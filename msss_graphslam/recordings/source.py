@@ -3,7 +3,7 @@
 """One topic of a recording, read as records."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -13,7 +13,7 @@ from msss_graphslam.messages.topics import Topic
 from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.typestore import UndecodableError, decode
 
-__all__ = ["Record", "Source"]
+__all__ = ["AnySource", "Record", "Source", "message_of"]
 
 
 class _Stamped(Protocol):
@@ -23,6 +23,18 @@ class _Stamped(Protocol):
 
 
 Record = TypeVar("Record", bound=_Stamped)
+Given = TypeVar("Given", covariant=True)
+
+
+class AnySource(Protocol[Given]):
+    """One topic of a recording; a message may give any number of records."""
+
+    @property
+    def topic(self) -> Topic:
+        """The topic."""
+
+    def records_of(self, raw: RawMessage, refusals: Counter[str]) -> Sequence[Given]:
+        """Return the records that are complete with this message; count what is refused."""
 
 
 @dataclass(slots=True)
@@ -33,18 +45,20 @@ class Source(Generic[Record]):
     decode: Callable[[Any], Record]
     _order: StampOrder = field(default_factory=StampOrder)
 
-    def record_of(self, raw: RawMessage, refusals: Counter[str]) -> Record | None:
-        """Return the record, or None where the message is refused and counted."""
+    def records_of(self, raw: RawMessage, refusals: Counter[str]) -> list[Record]:
+        """Return the record, or none where the message is refused and counted."""
         try:
-            record = self.decode(self._message(raw))
+            record = self.decode(message_of(raw, self.topic))
             self._order.check(record.stamp_ns)
         except Refusal as refusal:
             refusals[refusal.reason] += 1
-            return None
-        return record
+            return []
+        return [record]
 
-    def _message(self, raw: RawMessage) -> Any:
-        try:
-            return decode(raw.data, self.topic.type_name)
-        except UndecodableError as error:
-            raise Refusal(f"{self.topic.label}_undecodable") from error
+
+def message_of(raw: RawMessage, topic: Topic) -> Any:
+    """Return the message that was recorded of the topic, or raise Refusal."""
+    try:
+        return decode(raw.data, topic.type_name)
+    except UndecodableError as error:
+        raise Refusal(f"{topic.label}_undecodable") from error

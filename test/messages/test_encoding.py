@@ -68,6 +68,7 @@ def messages(maker: Any) -> dict[str, tuple[str, Any]]:
     nodes = np.arange(60.0).reshape(20, 3)
     return {
         "beam": ("sensor_msgs/msg/LaserScan", encoding.laser_scan(maker, BEAM, "s", 0.04)),
+        "raw": ("std_msgs/msg/UInt8MultiArray", encoding.raw_bytes(maker, b"@\n\x00", STAMP)),
         "imu": ("sensor_msgs/msg/Imu", encoding.imu(maker, IMU, "imu_link", 0.1, 0.2)),
         "imu without orientation": (
             "sensor_msgs/msg/Imu",

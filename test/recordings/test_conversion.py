@@ -175,6 +175,23 @@ def test_a_mounting_goes_into_the_bag(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(("value", "sense"), [("true", -1.0), ("false", 1.0)])
+def test_a_head_upside_down_is_mirrored_but_for_its_mounting(
+    tmp_path: Path, value: str, sense: float
+) -> None:
+    offsets = tmp_path / "offsets.yaml"
+    offsets.write_text(f"sonar: {{mount_yaw: 0.5, inverted: {value}}}")
+    clouds = [cloud(0, 1.0, [3.0, 2.0], [0.5, 1.0], "intensity")]
+    for name, messages in (("a.bag", [scan_line(0, 60.0, [1])]), ("b.bag", clouds)):
+        source = write_ros1(tmp_path / name, messages)
+        convert(source, tmp_path / f"{name}.mcap", Mounting.from_yaml(offsets))
+        [beam] = beams(tmp_path / f"{name}.mcap")
+        angle = radians(60.0) if name == "a.bag" else 1.0
+        assert beam.bearing == pytest.approx(sense * (np.pi - angle), abs=1e-6)
+        found = open_recording(tmp_path / f"{name}.mcap").mounting()
+        assert found is not None and found.mount_yaw == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -184,6 +201,8 @@ def test_a_mounting_goes_into_the_bag(tmp_path: Path) -> None:
         ("sonar: {height: 1}", "unknown under sonar: height"),
         ("sonar: {mount_yaw: 9.0}", "must lie in"),
         ("sonar: {mount_x: left}", "must be of type float"),
+        ("sonar: {inverted: 1}", "must be true or false"),
+        ("sonar: {inverted: upside down}", "must be true or false"),
         ("a: [", "cannot be read as YAML"),
     ],
 )
@@ -197,7 +216,7 @@ def test_offsets_that_are_none(tmp_path: Path, text: str, expected: str) -> None
 
 def test_nothing_usable_leaves_no_bag(tmp_path: Path) -> None:
     source = write_ros1(tmp_path / "a.bag", [scan_line(0, 0.0, [])])
-    with pytest.raises(UserError, match=r"no usable message.*beam_without_bins"):
+    with pytest.raises(UserError, match=r"no usable beam.*beam_without_bins"):
         convert(source, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 

@@ -97,7 +97,8 @@ def test_a_namespace_is_admitted_and_two_are_not(tmp_path: Path) -> None:
 
 def test_without_a_sonar_the_topics_found_are_named(tmp_path: Path) -> None:
     others = [entry for entry in sensor_messages(2) if entry[0] != "/sonar/ping"]
-    with pytest.raises(UserError, match=r"no topic /sonar/ping, only .*/imu/data.*msss convert"):
+    message = r"no topic /sonar/ping or /sonar/raw, only .*/imu/data.*msss convert"
+    with pytest.raises(UserError, match=message):
         read(write_bag(tmp_path / "dive", others))
 
 

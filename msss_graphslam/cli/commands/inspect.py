@@ -35,7 +35,7 @@ def _show(console: Console, report: InspectionReport) -> None:
     console.line(f"{report.path}: {report.duration:.1f} s")
     console.table(header, [_topic_row(topic) for topic in report.topics])
     if report.sonar is not None:
-        console.line(_head(report.sonar))
+        console.line(f"{_head(report.sonar)}, from {report.sonar_topic}")
     for line in _missing(report):
         console.line(line)
 

@@ -12,6 +12,7 @@ from msss_graphslam.messages.encoding.graph import constraint, graph_markers
 from msss_graphslam.messages.encoding.links import (
     correction,
     graph_poses,
+    moment,
     scan_beams,
     settled_odometry,
     tried,
@@ -25,7 +26,13 @@ from msss_graphslam.messages.encoding.poses import (
     transform,
 )
 from msss_graphslam.messages.encoding.primitives import Make, quaternion
-from msss_graphslam.messages.encoding.sensors import fluid_pressure, imu, laser_scan, twist
+from msss_graphslam.messages.encoding.sensors import (
+    fluid_pressure,
+    imu,
+    laser_scan,
+    raw_bytes,
+    twist,
+)
 
 __all__ = [
     "Make",
@@ -38,11 +45,13 @@ __all__ = [
     "imu",
     "laser_scan",
     "map_cloud",
+    "moment",
     "occupancy_grid",
     "odometry",
     "path",
     "pose",
     "quaternion",
+    "raw_bytes",
     "scan_beams",
     "scan_cloud",
     "settled_odometry",

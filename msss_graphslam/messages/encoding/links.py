@@ -3,6 +3,7 @@
 """What the nodes tell each other, without loss; ``messages.link_decoding`` gives it back."""
 
 from collections.abc import Sequence
+from functools import cache
 from math import isfinite
 from typing import Any
 
@@ -22,10 +23,15 @@ from msss_graphslam.messages.columns import BEAMS, DATATYPES, POSES, SETTLED, se
 from msss_graphslam.messages.encoding.primitives import Make, covariance_36, header, pose_of
 from msss_graphslam.messages.frames import BASE_LINK, MAP, ODOM
 
-__all__ = ["correction", "graph_poses", "scan_beams", "settled_odometry", "tried"]
+__all__ = ["correction", "graph_poses", "moment", "scan_beams", "settled_odometry", "tried"]
 
 # diagnostic_msgs/DiagnosticStatus
 _OK, _WARN = 0, 1
+
+
+def moment(make: Make, stamp_ns: int) -> Any:
+    """Return a stamp alone, as a std_msgs/Header."""
+    return header(make, stamp_ns, "")
 
 
 def settled_odometry(make: Make, stamp_ns: int, entries: Sequence[Odometry]) -> Any:
@@ -160,18 +166,25 @@ def _text(numbers: Array) -> str:
 
 def _cloud(make: Make, stamp_ns: int, frame_id: str, rows: NDArray[np.void]) -> Any:
     step = rows.dtype.itemsize
+    maker: Any = make  # can be looked up, which its protocol does not say
     return make(
         "sensor_msgs/msg/PointCloud2",
         header=header(make, stamp_ns, frame_id),
         height=1,
         width=len(rows),
-        fields=[_field(make, rows.dtype, name) for name in rows.dtype.names or ()],
+        fields=_fields(maker, rows.dtype),
         is_bigendian=False,
         point_step=step,
         row_step=step * len(rows),
         data=np.frombuffer(rows.tobytes(), dtype=np.uint8),
         is_dense=True,
     )
+
+
+@cache
+def _fields(make: Make, layout: np.dtype[np.void]) -> list[Any]:
+    """Return the sensor_msgs/PointFields of a layout, the same ones for every message."""
+    return [_field(make, layout, name) for name in layout.names or ()]
 
 
 def _field(make: Make, layout: np.dtype[np.void], name: str) -> Any:

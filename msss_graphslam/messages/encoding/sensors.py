@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""What sensors publish: one beam, an inertial sample, a pressure, a DVL's velocity."""
+"""What sensors publish: one beam, a port's bytes, an inertial sample, a pressure, a velocity."""
 
 from typing import Any
 
@@ -14,8 +14,9 @@ from msss_graphslam.messages.encoding.primitives import (
     orientation,
     vector,
 )
+from msss_graphslam.messages.raw_bytes import label_of
 
-__all__ = ["fluid_pressure", "imu", "laser_scan", "twist"]
+__all__ = ["fluid_pressure", "imu", "laser_scan", "raw_bytes", "twist"]
 
 
 def laser_scan(make: Make, beam: Beam, frame_id: str, scan_time: float) -> Any:
@@ -32,6 +33,18 @@ def laser_scan(make: Make, beam: Beam, frame_id: str, scan_time: float) -> Any:
         range_max=float(beam.ranges[-1]),
         ranges=np.ascontiguousarray(beam.ranges, dtype=np.float32),
         intensities=np.ascontiguousarray(beam.intensities, dtype=np.float32),
+    )
+
+
+def raw_bytes(make: Make, data: bytes, received_ns: int) -> Any:
+    """Return bytes of the sonar's port as a std_msgs/UInt8MultiArray; ``received_ns``: when."""
+    size = len(data)
+    dimension = make(
+        "std_msgs/msg/MultiArrayDimension", label=label_of(received_ns), size=size, stride=size
+    )
+    layout = make("std_msgs/msg/MultiArrayLayout", dim=[dimension], data_offset=0)
+    return make(
+        "std_msgs/msg/UInt8MultiArray", layout=layout, data=np.frombuffer(data, dtype=np.uint8)
     )
 
 

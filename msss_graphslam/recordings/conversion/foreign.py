@@ -5,7 +5,6 @@
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +14,8 @@ from msss_graphslam.core.types import Array, Beam
 from msss_graphslam.messages import Refusal, decoding, encoding
 from msss_graphslam.messages.frames import SONAR_LINK
 from msss_graphslam.messages.topics import Topic
+from msss_graphslam.recordings.conversion.source import ForeignSource
+from msss_graphslam.recordings.mounting import Mounting
 from msss_graphslam.recordings.typestore import make
 
 __all__ = ["BeamEncoder", "ForeignFormat", "ForeignMessage", "seanet_bearing"]
@@ -29,24 +30,34 @@ class ForeignMessage(NamedTuple):
 
 
 class ForeignFormat(ABC):
-    """A kind of foreign recording; listed in ``FORMATS``."""
+    """A kind of foreign recording; listed in ``FORMATS``.
+
+    ``mounting`` is that of the vehicle whose recordings these are, where there is only one.
+    """
 
     name: str
     description: str
+    mounting: Mounting | None = None
 
     @abstractmethod
-    def recognises(self, path: Path) -> bool:
-        """Whether the file is of this kind."""
+    def recognises(self, source: ForeignSource) -> bool:
+        """Whether it is of this kind."""
 
     @abstractmethod
-    def messages(self, path: Path, refusals: Counter[str]) -> Iterator[ForeignMessage]:
-        """Yield the converted messages as recorded; refused ones are counted by reason."""
+    def messages(
+        self, source: ForeignSource, refusals: Counter[str], inverted: bool
+    ) -> Iterator[ForeignMessage]:
+        """Yield the converted messages as recorded; refused ones are counted by reason.
+
+        ``inverted``: the head stood upside down, and the recording takes no account of it.
+        """
 
 
 class BeamEncoder:
     """Makes LaserScan messages of a head's beams, and refuses what no reader would take."""
 
-    def __init__(self) -> None:
+    def __init__(self, inverted: bool = False) -> None:
+        self._sense = -1.0 if inverted else 1.0
         self._last_ns: int | None = None
 
     def message(self, stamp_ns: int, bearing: float, ranges: Array, codes: Array) -> Any:
@@ -54,7 +65,7 @@ class BeamEncoder:
         if len(ranges) == 0:
             raise Refusal("beam_without_bins")
         period = 0.0 if self._last_ns is None else (stamp_ns - self._last_ns) * 1e-9
-        beam = Beam(stamp_ns, bearing, ranges, codes)
+        beam = Beam(stamp_ns, self._sense * bearing, ranges, codes)
         message = encoding.laser_scan(make, beam, SONAR_LINK, max(period, 0.0))
         decoding.beam(message)
         self._last_ns = stamp_ns
@@ -65,6 +76,6 @@ def seanet_bearing(angle: float) -> float:
     """Return the bearing counter-clockwise from ahead [rad] of a SeaNet angle [rad].
 
     A SeaNet head counts 6400 steps a turn clockwise from above, 3200 straight ahead; several
-    drivers publish them without that half turn.
+    drivers publish them without that half turn. A Ping360 counts 400 in the same way.
     """
     return float(wrap(np.pi - angle))

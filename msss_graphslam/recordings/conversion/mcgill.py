@@ -5,21 +5,21 @@
 from collections import Counter
 from collections.abc import Iterator
 from math import atan2
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from msss_graphslam.core.types import Array
 from msss_graphslam.messages import Refusal
-from msss_graphslam.messages.topics import SONAR_PING
+from msss_graphslam.messages.fields import stamp_of
+from msss_graphslam.recordings.conversion.bags import convert_beams, has_type
 from msss_graphslam.recordings.conversion.foreign import (
     BeamEncoder,
     ForeignFormat,
     ForeignMessage,
     seanet_bearing,
 )
-from msss_graphslam.recordings.conversion.ros1 import convert_type, has_type, stamp_of
+from msss_graphslam.recordings.conversion.source import ForeignSource
 
 __all__ = ["McGill"]
 
@@ -40,29 +40,34 @@ class McGill(ForeignFormat):
     name = "mcgill"
     description = "ROS 1 bag with sensor_msgs/PointCloud beams (McGill's tritech_micron)"
 
-    def recognises(self, path: Path) -> bool:
+    def recognises(self, source: ForeignSource) -> bool:
         """Whether the bag holds clouds."""
-        return has_type(path, _TYPE)
+        return has_type(source, _TYPE)
 
-    def messages(self, path: Path, refusals: Counter[str]) -> Iterator[ForeignMessage]:
+    def messages(
+        self, source: ForeignSource, refusals: Counter[str], inverted: bool
+    ) -> Iterator[ForeignMessage]:
         """Yield the beams."""
-        encoder = BeamEncoder()
+        encoder = BeamEncoder(inverted)
 
         def beam(cloud: Any) -> Any:
             last = cloud.points[-1] if cloud.points else None
             if last is None:
                 raise Refusal("beam_without_bins")
             bearing = seanet_bearing(atan2(last.y, last.x))
-            return encoder.message(stamp_of(cloud), bearing, _bin_centres(cloud), _codes(cloud))
+            return encoder.message(
+                stamp_of(cloud, "beam"), bearing, _bin_centres(cloud), _codes(cloud)
+            )
 
-        return convert_type(path, _TYPE, SONAR_PING, beam, refusals)
+        return convert_beams(source, _TYPE, beam, refusals)
 
 
 def _bin_centres(cloud: Any) -> Array:
     edges = np.hypot([point.x for point in cloud.points], [point.y for point in cloud.points])
     count = np.arange(len(edges))
     length = round(float(edges[-1]) / len(edges), _LENGTH_DIGITS)
-    if not np.allclose(edges, (count + 1.0) * length, atol=0.1 * length):
+    regular = np.isfinite(length) and np.allclose(edges, (count + 1.0) * length, atol=0.1 * length)
+    if not regular:
         raise Refusal("beam_bins_not_regular")
     return np.asarray((count + 0.5) * length, dtype=float)
 

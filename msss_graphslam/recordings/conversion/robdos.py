@@ -5,19 +5,19 @@
 from collections import Counter
 from collections.abc import Iterator
 from math import radians
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from msss_graphslam.messages.topics import SONAR_PING
+from msss_graphslam.messages.fields import stamp_of
+from msss_graphslam.recordings.conversion.bags import convert_beams, has_type
 from msss_graphslam.recordings.conversion.foreign import (
     BeamEncoder,
     ForeignFormat,
     ForeignMessage,
     seanet_bearing,
 )
-from msss_graphslam.recordings.conversion.ros1 import convert_type, has_type, stamp_of
+from msss_graphslam.recordings.conversion.source import ForeignSource
 
 __all__ = ["RobDos"]
 
@@ -30,18 +30,20 @@ class RobDos(ForeignFormat):
     name = "robdos"
     description = "ROS 1 bag with micron_driver_ros/ScanLine (RobDos)"
 
-    def recognises(self, path: Path) -> bool:
+    def recognises(self, source: ForeignSource) -> bool:
         """Whether the bag holds a ScanLine topic."""
-        return has_type(path, _TYPE)
+        return has_type(source, _TYPE)
 
-    def messages(self, path: Path, refusals: Counter[str]) -> Iterator[ForeignMessage]:
+    def messages(
+        self, source: ForeignSource, refusals: Counter[str], inverted: bool
+    ) -> Iterator[ForeignMessage]:
         """Yield the beams."""
-        encoder = BeamEncoder()
+        encoder = BeamEncoder(inverted)
 
         def beam(line: Any) -> Any:
             codes = np.array([bin_.intensity for bin_ in line.bins], dtype=float)
             ranges = (np.arange(len(codes)) + 0.5) * line.bin_distance_step
             bearing = seanet_bearing(radians(line.angle))
-            return encoder.message(stamp_of(line), bearing, ranges, codes)
+            return encoder.message(stamp_of(line, "beam"), bearing, ranges, codes)
 
-        return convert_type(path, _TYPE, SONAR_PING, beam, refusals)
+        return convert_beams(source, _TYPE, beam, refusals)
