@@ -15,15 +15,16 @@ from msss_graphslam.simulation.worlds import world_named
 FOLDER = Path(__file__).parent
 SAMPLE = FOLDER / "pond"
 SEED = 2
-BINS = 133
-"""A setting of the head: 15 cm a bin to 20 m; the pond of the paper was scanned with 5.7 cm."""
+BINS = 200
+"""A setting of the head: 10 cm a bin to 20 m; the pond of the paper was scanned with 5.7 cm."""
 
 
 def main() -> None:
     """Write the bag in place of the one that is there, and its checksum into the README."""
     pond = world_named("pond")
     with tempfile.TemporaryDirectory() as scratch:
-        made = simulate(pond, SEED, Path(scratch), sonar=replace(pond.sonar, bins=BINS))
+        sonar = replace(pond.sonar, bins=BINS)
+        made = simulate(pond, SEED, Path(scratch), sonar=sonar, raw=True)
         shutil.rmtree(SAMPLE, ignore_errors=True)
         shutil.move(made.bag, SAMPLE)
     content = next(SAMPLE.glob("*.mcap")).read_bytes()

@@ -18,6 +18,7 @@ from msss_graphslam.recordings.writer import BagWriter
 from msss_graphslam.simulation.echo_model import EchoKind
 from msss_graphslam.simulation.inertial import DVL_DEVIATION, NoiseLevel, VelocitySamples
 from msss_graphslam.simulation.mission import Mission, fly
+from msss_graphslam.simulation.raw_output import head_settings, packets
 from msss_graphslam.simulation.settings import SonarSettings
 from msss_graphslam.simulation.sonar import SonarRecord
 from msss_graphslam.simulation.worlds import World
@@ -49,14 +50,18 @@ def simulate(
     echo: EchoKind = EchoKind.REAL,
     sonar: SonarSettings | None = None,
     dvl: bool = False,
+    raw: bool = False,
     progress: Callable[[float], None] = lambda _: None,
 ) -> SimulatedBag:
     """Write the bag ``<world>_<seed>`` of a simulated mission, and its truth beside it.
 
-    The same arguments give the same bytes. ``sonar`` replaces the world's settings; ``progress``
-    is called with the fraction done. Raises UserError where the bag exists already.
+    The same arguments give the same bytes. ``sonar`` replaces the world's settings. With ``raw``
+    the bag holds the bytes that the head sends, not the beams, and the settings are rounded to
+    what a head can do. ``progress`` is called with the fraction done. Raises UserError where the
+    bag exists already, or no head takes such settings.
     """
     name = f"{world.name}_{seed}"
+    sonar = sonar or world.sonar
     paths = SimulatedBag(output_directory / name, output_directory / f"{name}_ground_truth.tum")
     with BagWriter(paths.bag) as bag:
         mission = fly(
@@ -64,11 +69,11 @@ def simulate(
             seed,
             noise=noise,
             echo=echo,
-            sonar=sonar or world.sonar,
+            sonar=head_settings(sonar) if raw else sonar,
             dvl=dvl,
             progress=lambda fraction: progress(_SIMULATING_SHARE * fraction),
         )
-        for count, (stamp_ns, topic, message) in enumerate(_messages(mission)):
+        for count, (stamp_ns, topic, message) in enumerate(_messages(mission, raw)):
             bag.write(topic.absolute, message, stamp_ns)
             if count % _MESSAGES_PER_REPORT == 0:
                 flown = (stamp_ns - _LAUNCH_NS) * 1e-9 / mission.motion.duration
@@ -78,9 +83,10 @@ def simulate(
     return paths
 
 
-def _messages(mission: Mission) -> Iterator[_Stamped]:
+def _messages(mission: Mission, raw: bool) -> Iterator[_Stamped]:
     """Return all messages in the order of their stamps."""
-    sources = [_truth(mission), _inertial(mission), _pressure(mission), _beams(mission.sonar)]
+    sonar = _raw_bytes(mission.sonar) if raw else _beams(mission.sonar)
+    sources = [_truth(mission), _inertial(mission), _pressure(mission), sonar]
     if mission.velocity is not None:
         sources.append(_velocity(mission.velocity))
     return heapq.merge(*sources, key=lambda stamped: stamped[0])
@@ -122,6 +128,12 @@ def _beams(record: SonarRecord) -> Iterator[_Stamped]:
         beam = Beam(stamp, float(bearing), ranges, codes)
         message = encoding.laser_scan(make, beam, "sonar_link", settings.beam_period)
         yield stamp, topics.SONAR_PING, message
+
+
+def _raw_bytes(record: SonarRecord) -> Iterator[_Stamped]:
+    for time, data in packets(record):
+        received_ns = _LAUNCH_NS + round(time * 1e9)
+        yield received_ns, topics.SONAR_RAW, encoding.raw_bytes(make, data, received_ns)
 
 
 def _stamps(times: Array) -> list[int]:

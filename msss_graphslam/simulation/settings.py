@@ -10,9 +10,10 @@ import numpy as np
 from msss_graphslam.core.types import Array
 from msss_graphslam.errors import UserError
 
-__all__ = ["Rotation", "SonarSettings"]
+__all__ = ["SOUND_SPEED", "Rotation", "SonarSettings"]
 
-_SOUND_SPEED = 1500.0
+SOUND_SPEED = 1500.0
+"""In the simulated water [m/s]."""
 _TURN_DECIMALS = 10
 
 
@@ -54,7 +55,7 @@ class SonarSettings:
                 raise UserError(f"sonar {name} = {getattr(self, name)!r}: must be positive")
         if self.step > self.sector or self.sector > 2.0 * np.pi:
             raise UserError("sonar sector: must be at least one step and at most a full turn")
-        if 2.0 * self.maximum_range / _SOUND_SPEED > self.beam_period:
+        if 2.0 * self.maximum_range / SOUND_SPEED > self.beam_period:
             raise UserError(
                 f"sonar beam_period = {self.beam_period:g} s: too short for echoes from"
                 f" {self.maximum_range:g} m"

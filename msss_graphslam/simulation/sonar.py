@@ -18,7 +18,7 @@ from msss_graphslam.simulation.streams import stream
 from msss_graphslam.simulation.vehicle import Motion
 from msss_graphslam.simulation.worlds import World
 
-__all__ = ["SonarRecord", "scan"]
+__all__ = ["SonarRecord", "echo_model_of", "pings_from", "scan"]
 
 _STAMP_JITTER = 0.001
 _CHUNK = 48
@@ -46,8 +46,8 @@ def scan(
     transmitted = np.arange(0.0, motion.duration, settings.beam_period)
     first_step = int(stream(seed, "first bearing").integers(int(2.0 * np.pi / settings.step)))
     bearings = settings.bearings(len(transmitted), first_step)
-    pings = _pings(motion.at(transmitted), bearings, settings.mount_yaw)
-    model = _echo_model(world, settings, echo, seed)
+    pings = pings_from(motion.at(transmitted), bearings, settings.mount_yaw)
+    model = echo_model_of(world, settings, echo, seed)
     codes = np.empty((len(bearings), settings.bins), dtype=np.uint8)
     for start in range(0, len(bearings), _CHUNK):
         part = slice(start, start + _CHUNK)
@@ -60,13 +60,14 @@ def scan(
     return SonarRecord(settings, transmitted + late, bearings, codes)
 
 
-def _echo_model(world: World, settings: SonarSettings, echo: EchoKind, seed: int) -> EchoModel:
+def echo_model_of(world: World, settings: SonarSettings, echo: EchoKind, seed: int) -> EchoModel:
+    """Return the echo model of that kind for a head with ``settings`` in the ``world``."""
     if echo is EchoKind.REAL:
         return RealEchoes(world.walls, settings, world.rough, seed)
     return IdealEchoes(world.walls, settings, seed)
 
 
-def _pings(poses: Array, bearings: Array, mount_yaw: float) -> Pings:
+def pings_from(poses: Array, bearings: Array, mount_yaw: float) -> Pings:
     """Return where the beams go: along the level line in each beam's tilted upright plane."""
     body = bearings + mount_yaw
     roll, pitch, yaw = poses[:, 3], poses[:, 4], poses[:, 5]

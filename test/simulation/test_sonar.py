@@ -12,7 +12,7 @@ from simulated_scenes import FAR_AWAY, SETTINGS, SQUARE, basin, levels, resting
 from msss_graphslam.errors import UserError
 from msss_graphslam.simulation.echo_model import EchoKind
 from msss_graphslam.simulation.settings import Rotation, SonarSettings
-from msss_graphslam.simulation.sonar import SonarRecord, _pings, scan
+from msss_graphslam.simulation.sonar import SonarRecord, pings_from, scan
 from msss_graphslam.simulation.vehicle import Motion
 
 
@@ -93,7 +93,7 @@ def test_a_tilted_beam_points_along_the_level_line_of_its_plane(
     roll: float, pitch: float, yaw: float, bearing: float
 ) -> None:
     pose = np.array([[0.0, 0.0, 0.0, roll, pitch, yaw]])
-    azimuth = _pings(pose, np.array([bearing]), 0.0).azimuths[0]
+    azimuth = pings_from(pose, np.array([bearing]), 0.0).azimuths[0]
     level_line = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     attitude = Attitude.from_euler("ZYX", [yaw, pitch, roll])
     normal = attitude.apply([-np.sin(bearing), np.cos(bearing), 0.0])

@@ -37,6 +37,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         default=EchoKind.REAL,
         help="echoes as a real head sends them, or a clean pulse and noise (default real)",
     )
+    parser.add_argument(
+        "--raw",
+        action="store_true",
+        help="the bytes of the head's port (sonar/raw) in place of the beams (sonar/ping)",
+    )
 
 
 def execute(arguments: Namespace, console: Console) -> ExitCode:
@@ -50,6 +55,7 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
             arguments.out,
             noise=arguments.noise,
             echo=arguments.echo,
+            raw=arguments.raw,
             progress=lambda fraction: progress(fraction, f"simulating {arguments.world}"),
         )
     data = {"bag": str(written.bag), "ground_truth": str(written.ground_truth)}
