@@ -61,6 +61,7 @@ lint: $(STAMP) ## style, types and the direction of imports
 bench: $(STAMP) ## milliseconds a scan by stage, for every estimator; cost of the live nodes
 	$(BIN)/python -m benchmarks.bench
 	$(BIN)/python -m benchmarks.live
+	$(BIN)/python -m benchmarks.micron_driver
 
 reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
 	$(BIN)/python -m benchmarks.reproduce $(OPTIONS)

@@ -9,7 +9,13 @@ from tempfile import TemporaryDirectory
 
 from benchmarks.live_measuring import at_real_time, bandwidth, late_keyframes, offline, replay
 from benchmarks.live_missions import SAMPLE, full_rate_bag
-from benchmarks.live_tables import bandwidth_table, latency_table, replay_table, usage_table
+from benchmarks.live_tables import (
+    bandwidth_table,
+    latency_table,
+    replay_cost_table,
+    replay_table,
+    usage_table,
+)
 from benchmarks.tables import Table
 from msss_graphslam.cli.console import Console
 
@@ -69,7 +75,9 @@ def _part(
 ) -> Iterator[Table]:
     if part == "replay":
         reference = offline(SAMPLE, scratch)
-        yield replay_table([replay(SAMPLE, rate, scratch, reference) for rate in RATES])
+        replays = [replay(SAMPLE, rate, scratch, reference) for rate in RATES]
+        yield replay_table(replays)
+        yield replay_cost_table(replays)
         return
     bag = full_rate_bag(folder, console)
     if part == "cpu":

@@ -34,7 +34,8 @@ __all__ = ["at_real_time", "bandwidth", "late_keyframes", "offline", "replay"]
 _DIAGNOSTICS = Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 _PROBED = (topics.SONAR_PING, topics.IMU, topics.ODOM, topics.POSE)
 _SETTLING = 5.0
-_NOT_COUNTED = ("bag_replay",)
+_REPLAY = "bag_replay"
+_NOT_COUNTED = (_REPLAY,)
 _TRAJECTORY = "trajectory.tum"
 
 
@@ -68,7 +69,8 @@ def replay(bag: Path, rate: float, scratch: Path, reference: Path) -> Replay:
     with running(bag, rate, output) as live:
         live.probe.listen([_DIAGNOSTICS], lambda data: _note(rows, data))
         live.probe.listen([topics.SETTLED_ODOMETRY])
-        live.listen_to_the_end()
+        cpu: dict[str, float] = {}
+        live.listen_to_the_end(lambda: cpu.update(_taken_in_replay(live)))
         whole = monotonic() - begun
         odometry = live.probe.arrivals[topics.SETTLED_ODOMETRY.name]
     mission, wall = (values[-1] - values[0] for values in (odometry.stamps, odometry.received))
@@ -78,6 +80,8 @@ def replay(bag: Path, rate: float, scratch: Path, reference: Path) -> Replay:
         whole=whole,
         lost=lost_messages(rows),
         equal=filecmp.cmp(output / _TRAJECTORY, reference, shallow=False),
+        mission=mission,
+        cpu=cpu,
     )
 
 
@@ -124,6 +128,18 @@ def _usage(live: LiveNodes, seconds: float) -> dict[str, NodeUsage]:
         )
         for name, process in processes.items()
     }
+
+
+def _taken_in_replay(live: LiveNodes) -> dict[str, float]:
+    """Return the CPU time [s] of each node so far, while the replay lasts."""
+    processes = nodes_of(live.process.pid) if live.are_running else {}
+    if _REPLAY not in processes:
+        return {}
+    taken = {}
+    for name, process in processes.items():
+        with suppress(FileNotFoundError, ProcessLookupError):
+            taken[name] = cpu_seconds(process)
+    return taken
 
 
 def _prompt_latencies(arrivals: dict[str, Arrivals]) -> list[Latency]:

@@ -7,7 +7,7 @@ import random
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
@@ -51,10 +51,17 @@ class LiveNodes:
         while monotonic() < until:
             self._listen()
 
-    def listen_to_the_end(self) -> None:
-        """Go on until the nodes have saved and ended; RuntimeError if that failed."""
+    def listen_to_the_end(self, look: Callable[[], object] = lambda: None) -> None:
+        """Go on until the nodes have saved and ended; RuntimeError if that failed.
+
+        ``look`` is called five times a second.
+        """
+        looked = monotonic()
         while self.are_running:
             self.probe.spin(_STEP)
+            if monotonic() - looked >= _STEP:
+                looked = monotonic()
+                look()
         if self.process.returncode:
             raise RuntimeError(f"msss live ended with {self.process.returncode}")
 

@@ -16,6 +16,7 @@ __all__ = [
     "Traffic",
     "bandwidth_table",
     "latency_table",
+    "replay_cost_table",
     "replay_table",
     "usage_table",
 ]
@@ -60,6 +61,7 @@ class Replay:
 
     ``rate`` is mission seconds a second from the first to the last odometry, ``whole`` the
     command's time [s]; ``lost`` messages; ``equal`` whether the trajectory is the offline run's.
+    ``cpu`` is what each node took [s] for ``mission`` [s] of the bag.
     """
 
     asked: float
@@ -67,6 +69,8 @@ class Replay:
     whole: float
     lost: int
     equal: bool
+    mission: float
+    cpu: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +131,7 @@ def replay_table(replays: Sequence[Replay]) -> Table:
     """Return a row a replay."""
     rows = [
         [
-            f"{replay.asked:g}" if replay.asked else "as fast as it goes",
+            _asked(replay),
             # What is asked for is reached but for a moment at the start.
             _mark(replay.rate >= 0.99 * RATE_BAR, f"{replay.rate:.1f}"),
             f"{replay.whole:.1f}",
@@ -144,6 +148,15 @@ def replay_table(replays: Sequence[Replay]) -> Table:
         "trajectory.tum as offline",
     ]
     return Table("Replay of the sample bag", header, rows)
+
+
+def replay_cost_table(replays: Sequence[Replay]) -> Table:
+    """Return a row a node: what it takes for 1000 s of mission, at each rate."""
+    names = list(dict.fromkeys(name for replay in replays for name in replay.cpu))
+    rows = [[name, *(_per_1000_s(replay, [name]) for replay in replays)] for name in names]
+    rows.append(["all", *(_per_1000_s(replay, names) for replay in replays)])
+    header = ["node", *(_asked(replay) for replay in replays)]
+    return Table("Replay: CPU seconds for 1000 s of mission, by the rate asked for", header, rows)
 
 
 def bandwidth_table(traffic: Mapping[str, Traffic], seconds: float) -> Table:
@@ -164,6 +177,14 @@ def bandwidth_table(traffic: Mapping[str, Traffic], seconds: float) -> Table:
     rows.append(["to and from a topside back end", "", "", f"{needed / seconds:.0f}", "yes"])
     header = ["topic", "messages/s", "bytes a message", "bytes/s", "topside back end"]
     return Table(f"Bandwidth at real time, {seconds:.0f} s of mission", header, rows)
+
+
+def _asked(replay: Replay) -> str:
+    return f"{replay.asked:g}" if replay.asked else "as fast as it goes"
+
+
+def _per_1000_s(replay: Replay, names: Sequence[str]) -> str:
+    return f"{1e3 * sum(replay.cpu.get(name, 0.0) for name in names) / replay.mission:.1f}"
 
 
 def _milliseconds(seconds: float, bar: float | None) -> str:

@@ -12,7 +12,7 @@ from launch_ros.substitutions import FindPackageShare
 
 PACKAGE = "msss_graphslam"
 REPLAY = {"bag": str, "rate": float, "start_offset": float, "loop": bool}
-SLAM = ("namespace", "params_file", "estimator", "output", "record")
+SLAM = ("namespace", "params_file", "estimator", "sonar", "output", "record")
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -55,6 +55,13 @@ def slam_arguments(share: FindPackageShare) -> list[DeclareLaunchArgument]:
             default_value="full",
             description="estimator of trajectory and map",
             choices=["dead_reckoning", "uspic", "chen2015", "full"],
+        ),
+        DeclareLaunchArgument(
+            "sonar",
+            default_value="none",
+            description="none: the bag has sonar/ping; raw: it has sonar/raw only, which"
+            " micron_driver decodes",
+            choices=["none", "raw"],
         ),
         argument("output", "", "folder for the files of the result; empty: no files"),
         argument("record", "", "bag for inputs and outputs; empty: nothing is recorded"),

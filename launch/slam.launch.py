@@ -6,6 +6,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
 from launch.substitutions import (
+    EqualsSubstitution,
     LaunchConfiguration,
     NotEqualsSubstitution,
     PathJoinSubstitution,
@@ -24,6 +25,8 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             *arguments(),
+            node("micron_driver", {}, condition=sonar_is("micron")),
+            node("micron_driver", {"source": "topic"}, condition=sonar_is("raw")),
             node("dead_reckoning", {}),
             node("scan_generation", {}),
             node("front_end", estimating),
@@ -44,6 +47,13 @@ def arguments() -> list[DeclareLaunchArgument]:
             default_value="full",
             description="estimator of trajectory and map",
             choices=["dead_reckoning", "uspic", "chen2015", "full"],
+        ),
+        DeclareLaunchArgument(
+            "sonar",
+            default_value="none",
+            description="none: others publish sonar/ping; micron: micron_driver does, with the"
+            " parameters of the group micron; raw: micron_driver makes it of sonar/raw",
+            choices=["none", "micron", "raw"],
         ),
         argument("output", "", "folder into which ~/save of back_end writes; empty: no files"),
         argument("record", "", "bag for inputs and outputs; empty: nothing is recorded"),
@@ -73,6 +83,11 @@ def node(name: str, parameters: dict[str, object], **options: object) -> Node:
 def given(name: str, kind: type) -> ParameterValue:
     """Return the value of an argument; a bag named 123 stays text."""
     return ParameterValue(LaunchConfiguration(name), value_type=kind)
+
+
+def sonar_is(choice: str) -> IfCondition:
+    """Return the condition that this is where the beams come from."""
+    return IfCondition(EqualsSubstitution(LaunchConfiguration("sonar"), choice))
 
 
 def is_given(name: str) -> IfCondition:

@@ -65,6 +65,12 @@ class PathJoinSubstitution:
 
 
 @dataclass
+class EqualsSubstitution:
+    left: Any
+    right: Any
+
+
+@dataclass
 class NotEqualsSubstitution:
     left: Any
     right: Any
@@ -154,7 +160,9 @@ class Launched:
             )
         )
 
-    def _typed(self, parameter: ParameterValue) -> Any:
+    def _typed(self, parameter: ParameterValue | str) -> Any:
+        if isinstance(parameter, str):
+            return parameter
         text = self.text(parameter.value)
         if parameter.value_type is not bool:
             return parameter.value_type(text)
@@ -171,6 +179,8 @@ class Launched:
                 return self.values[name]
             case PathJoinSubstitution(parts):
                 return str(Path(*map(self.text, parts)))
+            case EqualsSubstitution(left, right):
+                return str(self.text(left) == self.text(right)).lower()
             case NotEqualsSubstitution(left, right):
                 return str(self.text(left) != self.text(right)).lower()
             case FindPackageShare("msss_graphslam"):
@@ -183,7 +193,12 @@ MODULES: dict[str, list[type]] = {
     "launch.actions": [DeclareLaunchArgument, IncludeLaunchDescription, Shutdown],
     "launch.conditions": [IfCondition],
     "launch.launch_description_sources": [PythonLaunchDescriptionSource],
-    "launch.substitutions": [LaunchConfiguration, NotEqualsSubstitution, PathJoinSubstitution],
+    "launch.substitutions": [
+        EqualsSubstitution,
+        LaunchConfiguration,
+        NotEqualsSubstitution,
+        PathJoinSubstitution,
+    ],
     "launch_ros": [],
     "launch_ros.actions": [Node],
     "launch_ros.parameter_descriptions": [ParameterValue],

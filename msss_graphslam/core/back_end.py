@@ -13,9 +13,10 @@ import numpy as np
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.compounding import compose, rotation
+from msss_graphslam.core.constraint_defects import defect
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["BackEnd", "defect"]
+__all__ = ["BackEnd"]
 
 LAUNCH_VARIANCE = 1e-12
 """The first pose defines the map; its prior only holds the gauge [m^2, rad^2]."""
@@ -121,22 +122,6 @@ class BackEnd:
             noise = gtsam.noiseModel.Robust.Create(kernel, noise)
         relative = gtsam.Pose2(*constraint.relative_pose)
         return gtsam.BetweenFactorPose2(constraint.first, constraint.second, relative, noise)
-
-
-def defect(constraint: Constraint, keyframes: int) -> str:
-    """Say why a constraint may not enter a graph of so many keyframes, or return ''."""
-    if not 0 <= constraint.first < keyframes or not 0 <= constraint.second < keyframes:
-        return "unknown_keyframe"
-    if constraint.first == constraint.second:
-        return "joins_a_keyframe_to_itself"
-    covariance = constraint.covariance
-    if not (np.isfinite(constraint.relative_pose).all() and np.isfinite(covariance).all()):
-        return "not_finite"
-    if not np.allclose(covariance, covariance.T, rtol=1e-6, atol=1e-15):
-        return "covariance_not_symmetric"
-    if np.linalg.eigvalsh(covariance)[0] <= 0.0:
-        return "covariance_not_positive_definite"
-    return ""
 
 
 def _smoother() -> gtsam.ISAM2:

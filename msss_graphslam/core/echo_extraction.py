@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks, peak_widths
 
+from msss_graphslam.core.peaks import crossings, prominent_peaks
 from msss_graphslam.core.types import Array
 
 __all__ = ["Echoes", "find_echoes", "smoothing_kernel", "to_decibels"]
@@ -72,7 +72,7 @@ def find_echoes(levels: Array, thresholds: Array, drop: float, dynamic_range: fl
     thresholds = np.maximum(thresholds, levels[above].max() - dynamic_range)
     excess = np.zeros(levels.size + 2)
     np.maximum(levels - thresholds + drop, 0.0, out=excess[1:-1])
-    peaks = find_peaks(excess, prominence=drop)[0] - 1
+    peaks = prominent_peaks(excess, drop) - 1
     if not peaks.size:
         return _NONE
     return _with_edges(levels, peaks, drop)
@@ -80,12 +80,12 @@ def find_echoes(levels: Array, thresholds: Array, drop: float, dynamic_range: fl
 
 def _with_edges(levels: Array, peaks: NDArray[np.intp], drop: float) -> Echoes:
     heights = levels[peaks]
-    profile = (
-        np.full(peaks.size, drop),
-        np.zeros(peaks.size, np.intp),
-        np.full(peaks.size, levels.size - 1),
-    )
-    _, _, leading, trailing = peak_widths(levels, peaks, rel_height=1.0, prominence_data=profile)
+    profile = levels.tolist()
+    edges = [
+        crossings(profile, peak, height - drop)
+        for peak, height in zip(peaks.tolist(), heights.tolist(), strict=True)
+    ]
+    leading, trailing = np.array(edges).T
     whole_echo = (leading > 0.0) & (trailing < levels.size - 1)
     return Echoes(
         peaks[whole_echo], leading[whole_echo], trailing[whole_echo], heights[whole_echo]

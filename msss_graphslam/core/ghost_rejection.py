@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from msss_graphslam.config.groups import Segmentation
 from msss_graphslam.core.compounding import wrap
@@ -84,9 +82,25 @@ def _surfaces(echoes: _Echoes, config: Segmentation) -> Indices:
     """
     first, second = np.concatenate([_links(echoes, step, config) for step in (1, 2)], axis=1)
     size = echoes.ranges.size
-    graph = coo_array((np.ones(first.size), (first, second)), shape=(size, size))
-    numbers = connected_components(graph, directed=False)[1].reshape(echoes.ranges.shape)
+    numbers = _connected(size, first, second).reshape(echoes.ranges.shape)
     return np.where(np.isfinite(echoes.ranges), numbers, -1)
+
+
+def _connected(size: int, first: Indices, second: Indices) -> Indices:
+    """Return for each of ``size`` echoes the lowest of those that links (m,) join it to."""
+    roots = list(range(size))
+    for pair in zip(first.tolist(), second.tolist(), strict=True):
+        ends = []
+        for echo in pair:
+            while roots[echo] != echo:
+                roots[echo] = roots[roots[echo]]
+                echo = roots[echo]
+            ends.append(echo)
+        roots[max(ends)] = min(ends)
+    # A root is lower than what hangs on it, so one way up is enough.
+    for echo, root in enumerate(roots):
+        roots[echo] = roots[root]
+    return np.array(roots, dtype=np.intp)
 
 
 def _links(echoes: _Echoes, step: int, config: Segmentation) -> Indices:

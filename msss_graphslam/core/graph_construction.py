@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from msss_graphslam.core.back_end import defect
 from msss_graphslam.core.compounding import between, between_covariance
+from msss_graphslam.core.constraint_defects import defect
 from msss_graphslam.core.data_association import Candidate
 from msss_graphslam.core.match_result import MatchResult
 from msss_graphslam.core.matchers import ScanMatcher

@@ -3,11 +3,14 @@
 """Local lines through a scan's points: what point-to-line matching aligns with."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from msss_graphslam.core.types import Array
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 __all__ = ["LineFeatures", "line_features"]
 
@@ -35,7 +38,7 @@ class LineFeatures:
     variances: Array
     reach: Array
     flat: np.ndarray
-    tree: cKDTree
+    tree: "cKDTree"
 
 
 def line_features(points: Array, covariances: Array) -> LineFeatures | None:
@@ -46,6 +49,9 @@ def line_features(points: Array, covariances: Array) -> LineFeatures | None:
     """
     if len(points) < NEIGHBOURS:
         return None
+    # It holds 35 MiB, and a back end matches nothing until the end.
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(points)
     found = tree.query(points, k=NEIGHBOURS)
     distances, neighbours = np.asarray(found[0]), np.asarray(found[1])

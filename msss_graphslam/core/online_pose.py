@@ -8,7 +8,6 @@ import numpy as np
 
 from msss_graphslam.core.compounding import between, compose_jacobians, wrap_angle
 from msss_graphslam.core.history import DeadReckoningHistory
-from msss_graphslam.core.scan_generation import motion_covariances
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
 
 __all__ = ["OnlinePose"]
@@ -17,8 +16,10 @@ _PLANAR = [0, 1, 5]
 _MEMORY = 6000
 """Odometry kept for a correction that comes late: two minutes of a fast IMU."""
 
-_SHARES = np.linspace(0.0, 1.0, 9)
+_SHARES = np.linspace(0.0, 1.0, 9)[1:]
 """Where the way since the correction is looked at for its covariance."""
+
+_BLOCK = np.ix_(_PLANAR, _PLANAR)
 
 
 class OnlinePose:
@@ -75,13 +76,12 @@ class OnlinePose:
         elapsed = max((odometry.stamp_ns - correction.stamp_ns) * 1e-9, 0.0)
         now = np.array([self._position.real, self._position.imag, self._yaw])
         motion = between(correction.pose, now)
-        way, times = _SHARES[:, None] * motion, _SHARES * elapsed
-        drift = motion_covariances(way, times, correction.twist_error.covariance)[-1]
+        drift = _drift_covariance(motion, elapsed, correction.twist_error.covariance)
         by_first, by_second = compose_jacobians(correction.pose, motion)
         planar = by_first @ correction.covariance @ by_first.T + by_second @ drift @ by_second.T
         spread[_PLANAR] = 0.0
-        spread[:, [0, 1, 5]] = 0.0
-        spread[np.ix_(_PLANAR, _PLANAR)] = planar
+        spread[:, _PLANAR] = 0.0
+        spread[_BLOCK] = planar
         return spread
 
     def at(self, odometry: Odometry, stamp_ns: int) -> Array:
@@ -108,3 +108,18 @@ class OnlinePose:
         self._yaw += interval * self._turn
         self._reckoned, self._reckoned_yaw = reckoned, yaw
         self._stamp_ns = odometry.stamp_ns
+
+
+def _drift_covariance(motion: Array, elapsed: float, twist_covariance: Array) -> Array:
+    """Return the covariance (3, 3) of a steady ``motion`` (3,) that took ``elapsed`` [s].
+
+    That is ``motion_covariances`` of equal steps for the last of them alone: it is wanted for
+    every pose that is published.
+    """
+    x, y, yaw = motion.tolist()
+    turn = np.exp(1j * yaw * _SHARES).mean()
+    reach = float(_SHARES.mean())
+    derivative = elapsed * np.array(
+        [[turn.real, -turn.imag, -reach * y], [turn.imag, turn.real, reach * x], [0.0, 0.0, 1.0]]
+    )
+    return np.asarray(derivative @ twist_covariance @ derivative.T)

@@ -39,6 +39,10 @@ class ScanGenerator:
         """How many turns wait for their odometry."""
         return len(self._waiting)
 
+    def warm_up(self, beam: Beam) -> None:
+        """Learn the background from a beam that stands in an earlier process' scans."""
+        self._segmenter.segment(beam)
+
     def add_beam(self, beam: Beam) -> list[Scan]:
         """Algorithm 1, lines 4 and 7, for one beam, in the order of their stamps."""
         with self._stage("beam_segmentation"):

@@ -6,8 +6,9 @@ The method is pIC of L. Montesano, J. Minguez and L. Montano, Probabilistic scan
 motion estimation in unstructured environments, IROS 2005.
 """
 
+from functools import cache
+
 import numpy as np
-from scipy.special import chdtri
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import wrap
@@ -72,7 +73,7 @@ def _iterate(
     initial_covariance: Array,
     config: Matching,
 ) -> MatchResult:
-    gate = float(chdtri(2, 1.0 - config.compatibility))
+    gate = _quantile(config.compatibility)
     pose = np.array(initial, dtype=float)
     iteration, converged = 0, False
     while iteration < config.iterations and not converged:
@@ -92,12 +93,21 @@ def _iterate(
     figures = {
         "iterations": float(iteration),
         "overlap": float(np.sum(squared <= gate) / len(current.places)),
-        "residual": float(np.sqrt(np.median(squared) / chdtri(2, 0.5))),
+        "residual": float(np.sqrt(np.median(squared) / _quantile(0.5))),
         "mean_error_m": float(np.hypot(*pairs.errors.T).mean()),
         "shift": _shift(pose, initial, covariance + initial_covariance),
     }
     refusal = _refusal(figures, converged, covariance, config)
     return MatchResult(pose, covariance, refusal, figures)
+
+
+@cache
+def _quantile(probability: float) -> float:
+    """Return the quantile of the chi-square distribution with two degrees of freedom."""
+    # Other estimators are spared the 25 MiB that it holds.
+    from scipy.special import chdtri
+
+    return float(chdtri(2, 1.0 - probability))
 
 
 def _gauss_newton_step(pairs: Pairs) -> Array:

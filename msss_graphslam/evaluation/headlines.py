@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment
 from msss_graphslam.evaluation.errors import Statistics, start_end_gap
-from msss_graphslam.evaluation.figures.style import phrase
+from msss_graphslam.evaluation.wording import phrase
 
 __all__ = ["Headline", "headlines"]
 

@@ -13,10 +13,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.evaluation.assessment import Assessment
-from msss_graphslam.evaluation.figures.plates import DPI, comparison_plates, png, run_plates
-from msss_graphslam.evaluation.figures.style import Plate, colour, phrase
 from msss_graphslam.evaluation.headlines import headlines
+from msss_graphslam.evaluation.pictures import DPI, Picture, comparison_pictures, run_pictures
 from msss_graphslam.evaluation.result_table import result_table
+from msss_graphslam.evaluation.wording import colour, phrase
 from msss_graphslam.results.atomic import write_bytes
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import BagInfo
@@ -27,20 +27,24 @@ _CSS_PIXELS_AN_INCH = 108
 
 
 @dataclass(frozen=True, slots=True)
-class _Picture:
+class _Embedded:
     title: str
     caption: str
     data: str
     width: int
 
 
-def write_report(directory: ResultDirectory, assessment: Assessment) -> None:
-    """Write figures/*.png and report.html of one run."""
+def write_report(
+    directory: ResultDirectory,
+    assessment: Assessment,
+    pictures: Sequence[Picture] | None = None,
+) -> None:
+    """Write figures/*.png and report.html of one run, whose ``pictures`` may be drawn already."""
     record = assessment.record
     _write(
         directory,
         [assessment],
-        run_plates(assessment),
+        run_pictures(assessment) if pictures is None else pictures,
         title=f"Graph SLAM of {record.bag.name}",
         estimators=f"Estimator {phrase(assessment.estimator)}",
         timing=_timing_rows(assessment),
@@ -54,7 +58,7 @@ def write_comparison_report(directory: ResultDirectory, assessments: Sequence[As
     _write(
         directory,
         assessments,
-        comparison_plates(assessments),
+        comparison_pictures(assessments),
         title=f"Estimators compared on {assessments[0].record.bag.name}",
         estimators=", ".join(phrase(run.estimator) for run in assessments),
         timing=[],
@@ -66,7 +70,7 @@ def write_comparison_report(directory: ResultDirectory, assessments: Sequence[As
 def _write(
     directory: ResultDirectory,
     assessments: Sequence[Assessment],
-    plates: Sequence[Plate],
+    pictures: Sequence[Picture],
     **context: Any,
 ) -> None:
     record = assessments[-1].record
@@ -76,7 +80,7 @@ def _write(
         recorded=_recorded(record.bag),
         headlines=headlines(assessments),
         results=result_table(assessments),
-        pictures=[_picture(directory, plate) for plate in plates],
+        pictures=[_embedded(directory, picture) for picture in pictures],
         parameters=_parameters(record.configuration),
         **context,
     )
@@ -96,16 +100,14 @@ def _template() -> Template:
     return environment.get_template("report.html.jinja")
 
 
-def _picture(directory: ResultDirectory, plate: Plate) -> _Picture:
+def _embedded(directory: ResultDirectory, picture: Picture) -> _Embedded:
     """Save the figure, and return it as the report embeds it."""
-    content = png(plate)
-    write_bytes(directory.figure_path(plate.name), content)
-    pixels = int.from_bytes(content[16:20])
-    return _Picture(
-        plate.title,
-        plate.caption,
-        base64.b64encode(content).decode(),
-        round(pixels / DPI * _CSS_PIXELS_AN_INCH),
+    write_bytes(directory.figure_path(picture.name), picture.content)
+    return _Embedded(
+        picture.title,
+        picture.caption,
+        base64.b64encode(picture.content).decode(),
+        round(picture.width / DPI * _CSS_PIXELS_AN_INCH),
     )
 
 

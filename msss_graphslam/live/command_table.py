@@ -12,24 +12,19 @@ from pathlib import Path
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.files import ros_parameters
 from msss_graphslam.live.process import Command
+from msss_graphslam.nodes.names import DRIVER, FED, RECORDER, REPLAY, SLAM_NODES
 
-__all__ = ["RECORDER", "REPLAY", "SLAM_NODES", "Setup", "command_table"]
-
-SLAM_NODES = ("dead_reckoning", "scan_generation", "front_end", "back_end")
-REPLAY = "bag_replay"
-RECORDER = "bag_recorder"
+__all__ = ["Setup", "command_table", "saving_order"]
 
 _Value = str | float | bool | list[str]
-
-_FED = ("dead_reckoning", "scan_generation")
-"""The nodes that the replay feeds, and waits for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setup:
     """What to run: on the sensors' topics, or on a recording in their place.
 
-    A recording is replayed at ``rate`` times real time, 0 as fast as it goes.
+    A recording is replayed at ``rate`` times real time, 0 as fast as it goes. With ``driver`` the
+    beams come from a Micron's head, or of a recording from the bytes that it sent.
     """
 
     output: Path
@@ -39,13 +34,19 @@ class Setup:
     rate: float = 1.0
     record: Path | None = None
     namespace: str = ""
+    driver: bool = False
+
+
+def saving_order(setup: Setup) -> tuple[str, ...]:
+    """Return the nodes that save, in the order in which data goes through them."""
+    return (DRIVER, *SLAM_NODES) if setup.driver else SLAM_NODES
 
 
 def command_table(setup: Setup, folder: Path) -> list[Command]:
     """Return the commands in the order to start them; their parameter files go into ``folder``."""
     shared = folder / "configuration.yaml"
     shared.write_text(ros_parameters(setup.configuration), encoding="utf-8")
-    commands = [_command(name, setup, folder) for name in SLAM_NODES]
+    commands = [_command(name, setup, folder) for name in saving_order(setup)]
     if setup.record is not None:
         commands.append(_command(RECORDER, setup, folder))
     if setup.replay is not None:
@@ -80,11 +81,17 @@ def _parameters(name: str, setup: Setup) -> dict[str, _Value]:
             values["recording"] = str(setup.replay.resolve())
     if name == REPLAY and setup.replay is not None:
         values |= {"bag": str(setup.replay.resolve()), "rate": setup.rate, "conclude": False}
-        if setup.record is not None:
-            values["wait_for"] = [*_FED, RECORDER]
+        values["wait_for"] = _listeners(setup)
+    if name == DRIVER and setup.replay is not None:
+        values["source"] = "topic"
     if name == RECORDER and setup.record is not None:
         values["output"] = str(setup.record.resolve())
     return values
+
+
+def _listeners(setup: Setup) -> list[str]:
+    """Return the nodes that a replay has to wait for."""
+    return [DRIVER] * setup.driver + [*FED] + [RECORDER] * (setup.record is not None)
 
 
 def _parameter_file(values: Mapping[str, _Value]) -> str:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.types import Trajectory
+from msss_graphslam.messages import topics
 from msss_graphslam.recordings.reader import open_recording
 
-__all__ = ["configured_for", "truth_of"]
+__all__ = ["configured_for", "needs_driver", "truth_of"]
 
 
 def configured_for(bag: Path, configuration: Configuration) -> Configuration:
@@ -20,6 +21,11 @@ def configured_for(bag: Path, configuration: Configuration) -> Configuration:
     recording = open_recording(bag)
     recording.measurements(Counter(), configuration)
     return recording.completed(configuration)
+
+
+def needs_driver(bag: Path) -> bool:
+    """Whether the beams have to be decoded from the bytes of the head's port."""
+    return open_recording(bag).sonar_topic == topics.SONAR_RAW
 
 
 def truth_of(bag: Path) -> Trajectory | None:

@@ -8,11 +8,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from msss_graphslam.errors import UserError
-from msss_graphslam.live.command_table import REPLAY, SLAM_NODES, Setup, command_table
+from msss_graphslam.live.command_table import Setup, command_table, saving_order
 from msss_graphslam.live.conclusion import conclude_in
-from msss_graphslam.live.replayed import configured_for
+from msss_graphslam.live.replayed import configured_for, needs_driver
 from msss_graphslam.live.session import Outcome, Progress, run_session
 from msss_graphslam.live.supervisor import Say
+from msss_graphslam.nodes.names import REPLAY, SLAM_NODES
 from msss_graphslam.results.directory import ResultDirectory
 
 __all__ = ["run"]
@@ -35,7 +36,7 @@ def run(setup: Setup, say: Say, progress: Progress) -> Outcome:
         outcome = run_session(
             command_table(setup, Path(folder)),
             directory.path / _LOGS,
-            saving=SLAM_NODES,
+            saving=saving_order(setup),
             until=REPLAY if setup.replay is not None else None,
             conclude=conclude_in(setup.namespace),
             say=say,
@@ -43,7 +44,7 @@ def run(setup: Setup, say: Say, progress: Progress) -> Outcome:
         )
     if _changed_at(summary) == before:
         raise UserError(f"{setup.output}: nothing written, {_reason(outcome)}")
-    absent = {name: _ABSENT for name in SLAM_NODES if name not in outcome.answers}
+    absent = {name: _ABSENT for name in saving_order(setup) if name not in outcome.answers}
     return replace(outcome, failed=absent | outcome.failed)
 
 
@@ -55,7 +56,11 @@ def _checked(setup: Setup) -> Setup:
         raise UserError(f"{setup.record}: exists already; nothing is recorded over it")
     if setup.replay is None:
         return setup
-    return replace(setup, configuration=configured_for(setup.replay, setup.configuration))
+    return replace(
+        setup,
+        configuration=configured_for(setup.replay, setup.configuration),
+        driver=needs_driver(setup.replay),
+    )
 
 
 def _reason(outcome: Outcome) -> str:

@@ -26,7 +26,7 @@ from msss_graphslam.core.types import (
     TwistError,
 )
 from msss_graphslam.messages.columns import BEAMS, POSES, SETTLED, read_columns, read_stamps
-from msss_graphslam.messages.fields import numbers, pose_of, stamp_of, vector_of
+from msss_graphslam.messages.fields import numbers, pose_of, stamp_of, time_of, vector_of
 from msss_graphslam.messages.refusal import Refusal
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "correction",
     "graph_poses",
     "last_pose",
+    "moment",
     "path_poses",
     "scan_beams",
     "settled_odometry",
@@ -171,6 +172,11 @@ def stamped_pose(message: Any, name: str = "pose") -> StampedPose:
     return StampedPose(stamp_of(message, name), pose)
 
 
+def moment(message: Any) -> int:
+    """Return the stamp [ns] of a std_msgs/Header, which is all that it says."""
+    return time_of(message, "moment")
+
+
 def last_pose(message: Any) -> StampedPose:
     """Return the last pose of a nav_msgs/Path."""
     if not message.poses:
@@ -179,9 +185,7 @@ def last_pose(message: Any) -> StampedPose:
 
 
 def path_poses(message: Any) -> list[StampedPose]:
-    """Return the poses of a nav_msgs/Path, at least one, in the order of their stamps."""
-    if not message.poses:
-        raise Refusal("path_without_poses")
+    """Return the poses of a nav_msgs/Path in the order of their stamps."""
     poses = [_path_pose(placed) for placed in message.poses]
     if any(later.stamp_ns <= earlier.stamp_ns for earlier, later in pairwise(poses)):
         raise Refusal("path_stamps_not_increasing")

@@ -8,19 +8,21 @@ from pathlib import Path
 from typing import Any
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.types import KeyframeReport
+from msss_graphslam.core.types import KeyframeReport, Scan
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages import encoding, link_decoding
+from msss_graphslam.messages.link_decoding import StampedPose
 from msss_graphslam.messages.topics import GRAPH_POSES, POSE, SCAN_BEAMS, TRIED, Topic
-from msss_graphslam.nodes.arrived import take_arrived
+from msss_graphslam.nodes.arrived import Gathering, take_arrived
+from msss_graphslam.nodes.beginning import Beginning
 from msss_graphslam.nodes.closure_count import ClosureCount
 from msss_graphslam.nodes.display import Display
 from msss_graphslam.nodes.mission import Mission
 from msss_graphslam.nodes.others_refusals import OthersRefusals
-from msss_graphslam.nodes.timing import Throttle
-from msss_graphslam.offline.estimation import recipe_named
+from msss_graphslam.nodes.timing import Leisure, Throttle
+from msss_graphslam.offline.drawing import Drawing
+from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.offline.stopwatch import Stopwatch
-from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make, message_class
 from msss_graphslam.ros.node import SlamNode, run
@@ -53,11 +55,14 @@ class BackEndNode(SlamNode):
         self._others = OthersRefusals(self.get_fully_qualified_name())
         self._closures = ClosureCount(self.diagnostics.values)
         self._held: deque[KeyframeReport] = deque()
+        self._gathering = Gathering()
+        self._leisure = Leisure()
+        self._beginning = Beginning()
         self._begin()
         self._describe()
         self._poses = self.offer(GRAPH_POSES)
         self._display = Display(self)
-        self._subscribed = self._listen()
+        self._subscribed = self._gathering.inputs = self._listen()
         self.create_service(message_class("nav_msgs/srv/GetMap"), "get_map", self._give_map)
         self.every(_LOOK, self._look_after)
 
@@ -76,6 +81,8 @@ class BackEndNode(SlamNode):
         self._work_off()
         if not self._output:
             return True, "nothing written: the parameter output is empty"
+        if self._beginning.expects_more(whole=self._mission.is_whole):
+            return False, "looking for what was kept of before the start"
         try:
             self._write(Path(self._output))
         except UserError as error:
@@ -131,15 +138,22 @@ class BackEndNode(SlamNode):
         steady = {"ordered": False, "pausable": False}
         decode = link_decoding
         return [
-            self.listen(
-                SCAN_BEAMS, decode.scan_beams, lambda scan: self._mission.add_scan(scan), **steady
-            ),
-            self.listen(POSE, decode.stamped_pose, lambda pose: self._mission.add_online(pose)),
+            self.listen(SCAN_BEAMS, decode.scan_beams, self._take_scan, **steady),
+            self.listen(POSE, decode.stamped_pose, self._take_pose),
             self.listen(_DIAGNOSTICS, lambda message: message, self._others.hear, **steady),
             self.listen(TRIED, decode.tried, self._take_report, **steady),
         ]
 
+    def _take_scan(self, scan: Scan) -> None:
+        self._beginning.note()
+        self._mission.add_scan(scan)
+
+    def _take_pose(self, published: StampedPose) -> None:
+        self._mission.add_online(published)
+        self._gathering.take()
+
     def _take_report(self, report: KeyframeReport) -> None:
+        self._beginning.note()
         self._held.append(report)
         if not self.paused:
             self._work_off()
@@ -153,6 +167,7 @@ class BackEndNode(SlamNode):
                 self._answer()
             if is_new:
                 self._closures.add(report.constraints)
+                self._leisure.end()
                 self._ask_for_all()
         self._graph_due.run(self._show_graph)
 
@@ -168,6 +183,8 @@ class BackEndNode(SlamNode):
     def _look_after(self) -> None:
         if not self.paused:
             self._work_off()
+        if not self._leisure.lasts:
+            return
         self._path_due.run(lambda: self._display.show_path(self._mission.trajectory()))
         self._map_due.run(self._show_maps)
 
@@ -185,33 +202,28 @@ class BackEndNode(SlamNode):
         return response
 
     def _write(self, output: Path) -> None:
-        # Figures need libraries that a node otherwise does without.
-        from msss_graphslam.nodes.saving import LiveRun, save
-
         self.diagnostics.clear()
         refused: Counter[str] = self.diagnostics.refused + self._others.total
-        run_of = LiveRun(
-            self.parameters.configuration,
-            self._recipe,
-            refused,
-            self._mission.beams,
-            self._watch,
-            self._opened(),
-        )
-        record = save(self._mission.logbook().finish(), run_of, output)
+        # What draws makes ready while the graph is refined.
+        with Drawing() as drawing:
+            # Results and bags need libraries that a node otherwise does without.
+            from msss_graphslam.nodes.saving import LiveRun, opened, save
+
+            run_of = LiveRun(
+                self.parameters.configuration,
+                self._recipe,
+                refused,
+                self._mission.beams,
+                self._watch,
+                opened(self._recording, self._complain),
+            )
+            record = save(self._mission.logbook().finish(), run_of, output, drawing)
         self._display.show_path(record.estimate.trajectory)
         self._display.show_map(self._mission.newest_ns, record.points, record.grid)
 
-    def _opened(self) -> Recording | None:
-        """Return the recording; without it the results are worth writing all the same."""
-        if not self._recording:
-            return None
-        try:
-            return open_recording(Path(self._recording))
-        except UserError as error:
-            self.get_logger().error(f"{error}; the report goes without it")
-            self.diagnostics.warn(str(error))
-            return None
+    def _complain(self, text: str) -> None:
+        self.get_logger().error(text)
+        self.diagnostics.warn(text)
 
     def _failed(self, reason: str) -> str:
         self.diagnostics.error(f"save: {reason}")

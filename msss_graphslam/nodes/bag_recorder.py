@@ -6,15 +6,17 @@ import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, cast
 
 import rclpy
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
@@ -47,6 +49,7 @@ class BagRecorder(Node):
         self.counts: Counter[str] = Counter()
         self._bytes = 0
         self._since = time.monotonic(), 0
+        self._misfits: set[str] = set()
         self.diagnostics = Diagnostics(self)
         self.diagnostics.values["bytes_per_s"] = self._byte_rate
 
@@ -55,8 +58,7 @@ class BagRecorder(Node):
         for topic in topics.INPUTS + topics.OUTPUTS:
             self._record(writer, topic, topic.name)
         self._record(writer, _DIAGNOSTICS, TOPIC)
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(_FLUSH_PERIOD, writer.flush, clock=steady)
+        self.create_timer(_FLUSH_PERIOD, writer.flush, clock=_steady())
 
     def _read_output(self) -> Path:
         descriptor = make(
@@ -84,15 +86,41 @@ class BagRecorder(Node):
             self.counts[full] += 1
             self._bytes += len(data)
 
-        kind = message_class(topic.type_name)
-        self.create_subscription(kind, name, cast(Any, take), profile_of(topic, DEEP), raw=True)
         self.diagnostics.values[f"recorded/{full}"] = lambda: self.counts[full]
+        self._subscribe(topic, name, cast(Any, take))
+
+    def _subscribe(self, topic: Topic, name: str, take: Callable[[Any], None]) -> None:
+        """Subscribe without loss, or as it goes where a publisher offers less than that."""
+        kind = message_class(topic.type_name)
+        events = SubscriptionEventCallbacks(incompatible_qos=lambda _: self._misfits.add(name))
+        strict = self.create_subscription(
+            kind, name, take, profile_of(topic, DEEP), event_callbacks=events, raw=True
+        )
+
+        def give_in() -> None:
+            if name not in self._misfits:
+                return
+            timer.cancel()
+            self.destroy_subscription(strict)
+            self.create_subscription(kind, name, take, _modest(), raw=True)
+            self.get_logger().warning(f"{name} is offered without a guarantee: some may be lost")
+
+        timer = self.create_timer(_FLUSH_PERIOD, give_in, clock=_steady())
 
     def _byte_rate(self) -> float:
         """Return the bytes a second since the last call."""
         now = time.monotonic()
         (then, before), self._since = self._since, (now, self._bytes)
         return (self._bytes - before) / max(now - then, 1e-3)
+
+
+def _steady() -> Clock:
+    return Clock(clock_type=ClockType.STEADY_TIME)
+
+
+def _modest() -> QoSProfile:
+    """Return what every publisher can serve."""
+    return QoSProfile(depth=DEEP, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class _Stop:

@@ -13,7 +13,9 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from msss_graphslam.errors import UserError
-from msss_graphslam.nodes.conclusion import WORKING_ORDER, conclude, reset
+from msss_graphslam.messages import topics
+from msss_graphslam.nodes.conclusion import conclude, reset
+from msss_graphslam.nodes.names import DRIVER, SLAM_NODES
 from msss_graphslam.nodes.replay.flow import Flow
 from msss_graphslam.nodes.replay.output import Output
 from msss_graphslam.nodes.replay.pacing import BATCH_NS, Pace, batches
@@ -43,9 +45,13 @@ class BagReplay(Node):
         for topic in left_out:
             self.get_logger().info(f"{topic.name} is left out: no {topic.type_name} installed")
         self._names = {topic.name for topic in selected}
+        # The driver takes part only where it makes beams of recorded bytes.
+        is_raw = any(topics.SONAR_RAW.matches(name) for name in self._names)
+        self._concerned = (DRIVER, *SLAM_NODES) if is_raw else SLAM_NODES
         self._start_ns = self._recording.start_ns + round(self._settings.start_offset * 1e9)
         self._pace = Pace(self._settings.rate)
         self._output = Output(self, selected)
+        self._waited_for = self._settings.awaited(self._output.by_name)
         self._is_paused = False
         self._published = self._clock_ns = 0
         self._prepare()
@@ -58,7 +64,7 @@ class BagReplay(Node):
             self._start_anew()
             self._lap()
         if self._settings.conclude:
-            messages = conclude(self, WORKING_ORDER, self.get_logger().info)
+            messages = conclude(self, self._concerned, self.get_logger().info)
             for name, message in messages.items():
                 self.get_logger().info(f"{name} is done: {message}")
 
@@ -68,7 +74,7 @@ class BagReplay(Node):
         self._flow = Flow(
             self,
             self._output,
-            self._settings.wait_for,
+            self._waited_for,
             self._settings.patience,
             self._executor.spin_once,
         )
@@ -111,8 +117,8 @@ class BagReplay(Node):
         self._clock_ns = 0
 
     def _start_anew(self) -> None:
-        last = [name for name in WORKING_ORDER if name not in self._settings.wait_for]
-        for name in reset(self, [*self._settings.wait_for, *last][::-1]):
+        last = [name for name in self._concerned if name not in self._waited_for]
+        for name in reset(self, [*self._waited_for, *last][::-1]):
             self.get_logger().warning(f"{name} did not answer its reset")
 
     def _send(self, batch: list[RawMessage]) -> None:

@@ -6,26 +6,20 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from typing import Any
 
-from rclpy.client import Client
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from msss_graphslam.ros.messages import message_class
+from msss_graphslam.nodes.trigger import Spin, Trigger
 
-__all__ = ["WORKING_ORDER", "conclude", "reset"]
+__all__ = ["conclude", "reset"]
 
-WORKING_ORDER = ("dead_reckoning", "scan_generation", "front_end", "back_end")
-"""The nodes in the order in which data goes through them."""
-
-_TRIGGER = "std_srvs/srv/Trigger"
+# How long services are looked for [s], and those of nodes that are known to be there.
 _DISCOVERY = 1.0
+_LONG_DISCOVERY = 6.0
 _AGAIN = 0.1
-_GONE = 2.0
 _RESET = 10.0
 
-Spin = Callable[[float], None]
 Tell = Callable[[str], None]
 
 
@@ -50,17 +44,17 @@ def conclude(
     dict
         The last message of each node that was there.
     """
-    with _clients(node, names, "save") as (clients, spin):
+    with _triggers(node, names, "save") as (triggers, spin):
         return {
-            name: _insist(client, spin, partial(_tell, progress, name), bound)
-            for name, client in clients.items()
+            name: _insist(trigger, spin, partial(_tell, progress, name), bound)
+            for name, trigger in triggers.items()
         }
 
 
 def reset(node: Node, names: Sequence[str]) -> list[str]:
     """Call ``reset`` of each node that is there; return those that did not answer."""
-    with _clients(node, names, "reset") as (clients, spin):
-        answers = {name: _call(client, spin, _RESET) for name, client in clients.items()}
+    with _triggers(node, names, "reset") as (triggers, _):
+        answers = {name: trigger.call(_RESET) for name, trigger in triggers.items()}
     return [name for name, answer in answers.items() if answer is None]
 
 
@@ -68,11 +62,11 @@ def _tell(progress: Tell, name: str, message: str) -> None:
     progress(f"{name}: {message}")
 
 
-def _insist(client: Client, spin: Spin, progress: Tell, bound: float) -> str:
+def _insist(trigger: Trigger, spin: Spin, progress: Tell, bound: float) -> str:
     until = time.monotonic() + bound
     message = ""
     while (left := until - time.monotonic()) > 0.0:
-        answer = _call(client, spin, left)
+        answer = trigger.call(left)
         if answer is None:
             return f"no answer; last: {message}" if message else "no answer"
         if answer.success:
@@ -84,44 +78,35 @@ def _insist(client: Client, spin: Spin, progress: Tell, bound: float) -> str:
     return f"not through after {bound:.0f} s: {message}"
 
 
-def _call(client: Client, spin: Spin, bound: float) -> Any:
-    """Return the answer, or None where none comes or the service vanishes."""
-    future: Any = client.call_async(message_class(_TRIGGER).Request())
-    until = time.monotonic() + bound
-    seen = time.monotonic()
-    while not future.done():
-        spin(0.05)
-        now = time.monotonic()
-        seen = now if client.service_is_ready() else seen
-        if now > until or now - seen > _GONE:
-            client.remove_pending_request(future)
-            return None
-    return future.result()
-
-
 @contextmanager
-def _clients(
+def _triggers(
     node: Node, names: Sequence[str], service: str
-) -> Iterator[tuple[dict[str, Client], Spin]]:
-    """Give the clients of the services that are there, and what spins meanwhile."""
-    clients = {
-        name: node.create_client(message_class(_TRIGGER), f"{name}/{service}") for name in names
-    }
-    try:
-        with _spinning(node) as spin:
-            yield _present(clients, spin), spin
-    finally:
-        for client in clients.values():
-            node.destroy_client(client)
+) -> Iterator[tuple[dict[str, Trigger], Spin]]:
+    """Give the services that are there, and what spins meanwhile."""
+    with _spinning(node) as spin:
+        triggers = {name: Trigger(node, f"{name}/{service}", spin) for name in names}
+        try:
+            yield _present(node, triggers, spin), spin
+        finally:
+            for trigger in triggers.values():
+                trigger.close()
 
 
-def _present(clients: dict[str, Client], spin: Spin) -> dict[str, Client]:
-    until = time.monotonic() + _DISCOVERY
-    while time.monotonic() < until:
-        if all(client.service_is_ready() for client in clients.values()):
+def _present(node: Node, triggers: dict[str, Trigger], spin: Spin) -> dict[str, Trigger]:
+    began = time.monotonic()
+    while missing := [name for name, trigger in triggers.items() if not trigger.is_ready]:
+        lasting = time.monotonic() - began
+        if lasting > (_LONG_DISCOVERY if _is_known(node, missing) else _DISCOVERY):
             break
         _spin_for(spin, 0.05)
-    return {name: client for name, client in clients.items() if client.service_is_ready()}
+    return {name: trigger for name, trigger in triggers.items() if name not in missing}
+
+
+def _is_known(node: Node, names: Sequence[str]) -> bool:
+    """Whether one of the names is that of a node in the same namespace."""
+    here = node.get_namespace()
+    known = {name for name, where in node.get_node_names_and_namespaces() if where == here}
+    return not known.isdisjoint(names)
 
 
 @contextmanager

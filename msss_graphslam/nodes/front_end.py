@@ -14,12 +14,13 @@ from msss_graphslam.messages.topics import (
     CORRECTION,
     GRAPH_POSES,
     SCAN_BEAMS,
+    SCANS_TAKEN,
     TRIED,
 )
 from msss_graphslam.nodes.closure_count import ClosureCount
 from msss_graphslam.nodes.keyframing import Keyframing
 from msss_graphslam.nodes.timing import Stillness
-from msss_graphslam.offline.estimation import recipe_named
+from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode, run
 from msss_graphslam.ros.qos import DEEP
@@ -49,10 +50,12 @@ class FrontEndNode(SlamNode):
         self._tried = self.offer(TRIED, DEEP)
         self._constraints = self.offer(CONSTRAINTS, DEEP)
         self._correction = self.offer(CORRECTION)
+        self._taken = self.offer(SCANS_TAKEN)
         self._stillness = Stillness()
         self._closures = ClosureCount(self.diagnostics.values)
         self._keyframing = self._begin()
         self._describe()
+        self._tell_taken(0)
         self.listen(
             GRAPH_POSES,
             link_decoding.graph_poses,
@@ -67,6 +70,7 @@ class FrontEndNode(SlamNode):
         """Begin a new graph."""
         self._keyframing = self._begin()
         self._closures.clear()
+        self._tell_taken(0)
 
     def on_save(self) -> tuple[bool, str]:
         """Say whether every scan is worked off and answered."""
@@ -102,10 +106,19 @@ class FrontEndNode(SlamNode):
     def _take_scan(self, scan: Scan) -> None:
         self._stillness.stir()
         self._keyframing.add_scan(scan)
+        # Of a turn that was cut off, the last beam is the end.
+        self._tell_taken(max(self._taken_ns, scan.end_stamp_ns + (not scan.complete)))
 
     def _take_answer(self, known: GraphPoses) -> None:
         self._stillness.stir()
         self._keyframing.add_answer(known)
+        if len(known.stamps_ns):
+            self._tell_taken(max(self._taken_ns, int(known.stamps_ns[-1])))
+
+    def _tell_taken(self, stamp_ns: int) -> None:
+        """Tell from where on beams are missing, for a scan generation that is started again."""
+        self._taken_ns = stamp_ns
+        self._taken.publish(encoding.moment(make, stamp_ns))
 
     def _look_after(self) -> None:
         if self._keyframing.waited > self._timeout:

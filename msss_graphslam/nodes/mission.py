@@ -68,6 +68,12 @@ class Mission:
         return len(self._scans)
 
     @property
+    def is_whole(self) -> bool:
+        """Whether there are scans, and keyframes of exactly those that make one."""
+        usable = {stamp for stamp, scan in self._scans.items() if scan.usable}
+        return bool(self._scans) and usable == {report.stamp_ns for report in self._reports}
+
+    @property
     def newest_ns(self) -> int:
         """Stamp of the newest keyframe, 0 without any."""
         return self._reports[-1].stamp_ns if self._reports else 0

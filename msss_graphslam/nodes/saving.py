@@ -3,6 +3,7 @@
 """The files of a live run: what ``msss run`` writes, from what the back end has."""
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,14 +11,16 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import Estimate
 from msss_graphslam.errors import UserError
+from msss_graphslam.evaluation.assessment import assess
 from msss_graphslam.evaluation.report import write_report
+from msss_graphslam.offline.drawing import Drawing
 from msss_graphslam.offline.stopwatch import Stopwatch
-from msss_graphslam.offline.writing import command_line, record_of, write_results
-from msss_graphslam.recordings.reader import Recording
+from msss_graphslam.offline.writing import command_line, record_of, write_assessed
+from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import RunRecord
 
-__all__ = ["LiveRun", "save"]
+__all__ = ["LiveRun", "opened", "save"]
 
 _NOT_ONLINE = "/pose: nothing came; dead reckoning stands for what was known online"
 
@@ -37,7 +40,16 @@ class LiveRun:
     recording: Recording | None = None
 
 
-def save(result: Estimate, run: LiveRun, output: Path) -> RunRecord:
+def opened(path: str, complain: Callable[[str], object]) -> Recording | None:
+    """Return the recording; without it the results are worth writing all the same."""
+    try:
+        return open_recording(Path(path)) if path else None
+    except UserError as error:
+        complain(f"{error}; the report goes without it")
+        return None
+
+
+def save(result: Estimate, run: LiveRun, output: Path, drawing: Drawing) -> RunRecord:
     """Write all files; return the record. Raises UserError where there is nothing to write."""
     if not len(result.trajectory.stamps_ns):
         raise UserError("no scan has come in")
@@ -56,7 +68,10 @@ def save(result: Estimate, run: LiveRun, output: Path) -> RunRecord:
     if not was_online:
         missing = (*record.bag.missing, _NOT_ONLINE)
         record = replace(record, bag=replace(record.bag, missing=missing))
-    write_report(directory, write_results(record, directory))
+    assessment = assess(record)
+    drawing.begin(assessment)
+    write_assessed(assessment, directory)
+    write_report(directory, assessment, drawing.pictures())
     return record
 
 

@@ -5,7 +5,7 @@
 import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
-from time import perf_counter
+from time import monotonic, perf_counter
 
 import numpy as np
 
@@ -13,8 +13,11 @@ from msss_graphslam.core.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Scan
 from msss_graphslam.messages import decoding, encoding, frames, link_decoding, topics
 from msss_graphslam.messages.link_decoding import SettledOdometry
+from msss_graphslam.nodes.arrived import Gathering
+from msss_graphslam.nodes.path_output import PathOutput
 from msss_graphslam.nodes.quiet import Quiet
-from msss_graphslam.nodes.reckoned_path import ReckonedPath
+from msss_graphslam.nodes.resumed_beams import ResumedBeams
+from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode, run
 from msss_graphslam.ros.qos import DEEP
@@ -22,19 +25,31 @@ from msss_graphslam.ros.qos import DEEP
 __all__ = ["ScanGenerationNode", "main"]
 
 _SCAN_FRAME = "scan"
-_PATH_PERIOD = 1.0
+_LOOK = 0.2
+_PROGRESS_NS = 100_000_000
+_LONG_AGO = -(2**62)
 # Without anything new for so long [s], no odometry will come for the last beams.
 _LONGEST_WAIT = 2.0
+# A sonar that goes on all the time is always ahead of its odometry: after so long [s] the beams
+# count that were there when the save was asked for.
+_PATIENCE = 3.0
 
 
 class ScanGenerationNode(SlamNode):
-    """Beams and settled odometry in, scans out; the order of arrival does not matter."""
+    """Beams and settled odometry in, scans out; the order of arrival does not matter.
+
+    Started again, it goes on where the scans end that the front end has: with the beams that dead
+    reckoning has kept meanwhile.
+    """
+
+    _asked: tuple[float, int] | None = None
 
     def __init__(self) -> None:
         super().__init__("scan_generation", ("sonar", "segmentation", "scanning", "sensors"))
         self._scan_beams = self.offer(topics.SCAN_BEAMS, DEEP)
         self._scan_points = self.offer(topics.SCAN)
-        self._path_output = self.offer(topics.RECKONED_PATH)
+        self._path = PathOutput(self)
+        self._progress = self.offer(topics.SCAN_PROGRESS)
         self._transforms = self.offer(topics.TRANSFORMS)
         self._made = 0
         self._busy = 0.0
@@ -42,52 +57,97 @@ class ScanGenerationNode(SlamNode):
         self.diagnostics.values["scans"] = lambda: self._made
         self.diagnostics.values["turns_waiting"] = lambda: self._generator.waiting
         self.diagnostics.values["time_per_scan_s"] = lambda: self._busy / max(self._made, 1)
-        self.listen(topics.SONAR_PING, decoding.beam, self._take_beam, single=True, required=True)
-        self.listen(
-            topics.SETTLED_ODOMETRY,
-            link_decoding.settled_odometry,
-            self._take_odometry,
-            ordered=False,
-        )
-        self.every(_PATH_PERIOD, self._publish_path)
+        self._recalled: list[Input] = []
+        self._gathering = Gathering()
+        self._gathering.inputs = self._listen()
 
     def on_reset(self) -> None:
-        """Forget beams, odometry and path."""
+        """Forget beams, odometry and path; nothing is resumed."""
         self._start_anew()
+        self._beams.join()
+        self._path.reset()
 
     def on_save(self) -> tuple[bool, str]:
         """Make the last scans, once the odometry covers them or nothing more comes."""
+        if self._beams.expects_more:
+            return False, "waiting for beams of before the start"
+        self._beams.join()
+        self._asked = self._asked or (monotonic(), self._beam_ns)
         if not self._is_covered and self._quiet.lasting < _LONGEST_WAIT:
             return False, "waiting for odometry"
         if not self._quiet.is_reached():
             return False, "input still comes in"
+        self._asked = None
         scans = self._generator.finish()
         self._publish(scans)
-        self._publish_path()
+        self._path.publish_new()
         return True, f"{len(scans)} last turns made"
 
     @property
     def _is_covered(self) -> bool:
-        return self._reckoned_ns >= self._beam_ns
+        if self._asked is None or monotonic() - self._asked[0] <= _PATIENCE:
+            return self._reckoned_ns >= self._beam_ns
+        return self._reckoned_ns >= self._asked[1]
+
+    def _listen(self) -> list[Input]:
+        hear = {"single": True, "required": True}
+        steady = {"ordered": False}
+        decode = link_decoding
+        self._recalled = [
+            self.listen(topics.SCANS_TAKEN, decode.moment, self._begin_at, **steady),
+            self.listen(topics.RECENT_BEAMS, decoding.beam, self._recall, **steady),
+        ]
+        self.every(_LOOK, self._look)
+        return [
+            self.listen(topics.SONAR_PING, decoding.beam, self._hear, **hear),
+            self.listen(
+                topics.SETTLED_ODOMETRY, decode.settled_odometry, self._take_odometry, **steady
+            ),
+        ]
+
+    def _hear(self, beam: Beam) -> None:
+        self._beams.hear(beam)
+        self._gathering.take()
+
+    def _recall(self, beam: Beam) -> None:
+        self._beams.recall(beam)
+
+    def _begin_at(self, stamp_ns: int) -> None:
+        self._beams.begin_at(stamp_ns)
+
+    def _look(self) -> None:
+        """Begin when it is time; what is only of use for that is not listened to any longer."""
+        self._beams.look()
+        if self._beams.joined:
+            while self._recalled:
+                self.ignore(self._recalled.pop())
 
     def _start_anew(self) -> None:
         self._generator = ScanGenerator(
             self.parameters.configuration, self.diagnostics.refused, self._timed
         )
-        self._path = ReckonedPath()
-        self._path_is_new = False
         self._beam_ns = self._reckoned_ns = 0
+        self._told_ns = _LONG_AGO
+        self._beams = ResumedBeams(
+            self._take_beam,
+            lambda beam: self._generator.warm_up(beam),
+            lambda: self.count_publishers(topics.RECENT_BEAMS.name) > 0,
+            lambda: self.count_publishers(topics.SCANS_TAKEN.name) > 0,
+        )
         self._quiet = Quiet()
+        self._asked = None
 
     def _take_beam(self, beam: Beam) -> None:
         self._beam_ns = beam.stamp_ns
         self._publish(self._generator.add_beam(beam))
+        if beam.stamp_ns - self._told_ns >= _PROGRESS_NS:
+            self._told_ns = beam.stamp_ns
+            self._progress.publish(encoding.moment(make, beam.stamp_ns))
         self._quiet.note()
 
     def _take_odometry(self, settled: SettledOdometry) -> None:
         if not settled.entries:
             return
-        self._path_is_new = True
         self._reckoned_ns = max(self._reckoned_ns, settled.entries[-1].stamp_ns)
         for entry in settled.entries:
             self._path.add(entry)
@@ -112,14 +172,6 @@ class ScanGenerationNode(SlamNode):
             transform = encoding.transform(make, scan.stamp_ns, placement, odom, frame)
             self._transforms.publish(encoding.tf_message(make, [transform]))
         self._scan_points.publish(encoding.scan_cloud(make, scan, frame))
-
-    def _publish_path(self) -> None:
-        if not self._path_is_new:
-            return
-        self._path_is_new = False
-        trajectory = self._path.trajectory
-        message = encoding.path(make, trajectory, self.frame(frames.ODOM))
-        self._path_output.publish(message, trajectory.poses)
 
     def _timed(self, _name: str) -> AbstractContextManager[object]:
         return self._add_time()

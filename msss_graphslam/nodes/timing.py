@@ -5,7 +5,7 @@
 from collections.abc import Callable
 from time import monotonic
 
-__all__ = ["Stillness", "Throttle"]
+__all__ = ["Leisure", "Stillness", "Throttle"]
 
 _LEISURE = 10.0
 _STILL = 1.0
@@ -40,6 +40,30 @@ class Throttle:
             end = self._clock()
             self._next = begun + max(self._period, _LEISURE * (end - begun))
         return True
+
+
+class Leisure:
+    """Whether slow work can be done before something comes that must be answered at once.
+
+    It comes in nearly equal intervals: the first half of one is free, and what lasts long after
+    one, as nothing may come any more.
+    """
+
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+        self._clock = clock
+        self._last = clock()
+        self._interval = 0.0
+
+    def end(self) -> None:
+        """Note that it has come."""
+        now = self._clock()
+        self._interval, self._last = now - self._last, now
+
+    @property
+    def lasts(self) -> bool:
+        """Whether there is time."""
+        since = self._clock() - self._last
+        return since < 0.5 * self._interval or since > 2.0 * self._interval
 
 
 class Stillness:

@@ -9,7 +9,7 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.pipeline import Pipeline
-from msss_graphslam.core.recipes import ESTIMATORS, Recipe
+from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import Beam
 from msss_graphslam.errors import UserError
 from msss_graphslam.offline.stopwatch import Stopwatch
@@ -17,7 +17,7 @@ from msss_graphslam.offline.writing import command_line, record_of
 from msss_graphslam.recordings.reader import Recording
 from msss_graphslam.results.record import RunRecord
 
-__all__ = ["Progress", "estimate", "recipe_named"]
+__all__ = ["Progress", "estimate"]
 
 Progress = Callable[[float, str], None]
 """Takes the finished fraction, 0 to 1, and what is being done."""
@@ -26,13 +26,6 @@ READING, REFINING = 0.75, 0.2
 """Shares of a run, as its progress shows them; maps and report are the rest."""
 
 REPORT_EVERY = 500
-
-
-def recipe_named(name: str) -> Recipe:
-    """Return the estimator; UserError for an unknown name."""
-    if name not in ESTIMATORS:
-        raise UserError(f"unknown estimator {name!r}; choose one of {', '.join(ESTIMATORS)}")
-    return ESTIMATORS[name]
 
 
 def estimate(

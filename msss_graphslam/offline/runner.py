@@ -8,7 +8,8 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.report import write_comparison_report, write_report
-from msss_graphslam.offline.estimation import Progress, estimate, recipe_named
+from msss_graphslam.offline.estimation import Progress, estimate
+from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.offline.writing import write_results
 from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.results.directory import ResultDirectory

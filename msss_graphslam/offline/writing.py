@@ -20,7 +20,7 @@ from msss_graphslam.recordings.reader import Recording
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import BagInfo, RunRecord, example_scan
 
-__all__ = ["command_line", "record_of", "write_results"]
+__all__ = ["command_line", "record_of", "write_assessed", "write_results"]
 
 
 def command_line(words: Sequence[str], configuration: Configuration) -> str:
@@ -63,16 +63,21 @@ def record_of(
         cost=watch.cost,
         version=__version__,
         command=command,
-        example_beams=_example_beams(recording, result) if recording else (),
+        example_beams=_example_beams(recording, result, configuration) if recording else (),
     )
 
 
 def write_results(record: RunRecord, directory: ResultDirectory) -> Assessment:
     """Write the estimate and its summary; return the assessment for a report."""
     assessment = assess(record)
-    directory.write_estimate(record)
-    directory.write_summary(summarise(assessment))
+    write_assessed(assessment, directory)
     return assessment
+
+
+def write_assessed(assessment: Assessment, directory: ResultDirectory) -> None:
+    """Write the estimate and its summary."""
+    directory.write_estimate(assessment.record)
+    directory.write_summary(summarise(assessment))
 
 
 def _bag_info(recording: Recording) -> BagInfo:
@@ -91,11 +96,12 @@ def _live_info(result: Estimate) -> BagInfo:
     return BagInfo("live data", int(stamps[0]), int(stamps[-1]), messages={})
 
 
-def _example_beams(recording: Recording, result: Estimate) -> tuple[Beam, ...]:
+def _example_beams(
+    recording: Recording, result: Estimate, configuration: Configuration
+) -> tuple[Beam, ...]:
     number = example_scan(result)
     if number is None:
         return ()
     stamps = set(result.keyframes[number].scan.beam_stamps_ns.tolist())
-    return tuple(
-        beam for beam in recording.beams(min(stamps), max(stamps)) if beam.stamp_ns in stamps
-    )
+    beams = recording.beams(min(stamps), max(stamps), configuration)
+    return tuple(beam for beam in beams if beam.stamp_ns in stamps)

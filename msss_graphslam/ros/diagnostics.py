@@ -75,6 +75,10 @@ class Diagnostics:
             self._inputs[topic_name] = InputWatch(topic_name, monotonic)
         return self._inputs[topic_name]
 
+    def forget(self, topic_name: str) -> None:
+        """Show the input no more."""
+        self._inputs.pop(topic_name, None)
+
     def warn(self, text: str) -> None:
         """Show a warning until cleared."""
         self._findings[Level.WARN] = text

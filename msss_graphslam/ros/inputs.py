@@ -82,7 +82,15 @@ class Input:
         self._misfit = ""
         self.subscription = self._subscribe()
         self._publishers = PublisherWatch(self.publishers, exclusive=rules.single)
-        diagnostics.checks += [self._clock, self._silence, self._quality, self._several]
+        self._checks = [self._clock, self._silence, self._quality, self._several]
+        diagnostics.checks += self._checks
+
+    def close(self) -> None:
+        """Subscribe no more, and say no more of it."""
+        self._node.destroy_subscription(self.subscription)
+        self._diagnostics.forget(self.topic.name)
+        for check in self._checks:
+            self._diagnostics.checks.remove(check)
 
     def reset(self) -> None:
         """Start anew: whatever comes next is in order."""

@@ -33,21 +33,29 @@ _EVENT_PULSES = 5
 class SlamNode(Node):
     """A node with the package's manners; no input makes it end.
 
-    A derived class overrides ``on_reset``, ``on_save``, ``on_parameters`` and ``on_shutdown``.
+    A derived class overrides ``on_reset``, ``on_save``, ``check_parameters``, ``on_parameters``
+    and ``on_shutdown``.
     """
 
     _pulses = 0
 
     def __init__(
-        self, name: str, groups: Sequence[str] = (), changeable: Sequence[str] = ()
+        self,
+        name: str,
+        groups: Sequence[str] = (),
+        changeable: Sequence[str] = (),
+        flat: Sequence[str] = (),
     ) -> None:
         super().__init__(name)
         self.paused = False
         self.diagnostics = Diagnostics(self)
         self.faults = Faults(self.diagnostics.refused, self.log_error)
         changed = self.faults.guarded(lambda now: self.on_parameters(now), "parameters")
-        self.parameters = Parameters(self, groups, changeable, changed)
+        self.parameters = Parameters(
+            self, groups, changeable, changed, flat, self.check_parameters
+        )
         self._inputs: list[Input] = []
+        self._outputs: list[Output] = []
         self._resets = 0
         self._frame_prefix = self.parameters.declare(
             "frame_prefix", "", "stands before the name of every frame that is published"
@@ -110,9 +118,16 @@ class SlamNode(Node):
         self._inputs.append(subscribed)
         return subscribed
 
+    def ignore(self, subscribed: Input) -> None:
+        """Take back what ``listen`` returned."""
+        self._inputs.remove(subscribed)
+        subscribed.close()
+
     def offer(self, topic: Topic, depth: int | None = None) -> Output:
         """Advertise a topic, with ``depth`` messages kept."""
-        return Output(self, topic, depth, self.diagnostics)
+        output = Output(self, topic, depth, self.diagnostics)
+        self._outputs.append(output)
+        return output
 
     def every(self, period: float, work: Callable[[], object]) -> Timer:
         """Do the work each ``period`` seconds of wall time, whatever /clock says."""
@@ -129,6 +144,9 @@ class SlamNode(Node):
         """Work off what is held and write what is to be written; say whether all is done."""
         return True, "nothing to save"
 
+    def check_parameters(self, configuration: Configuration) -> None:
+        """Raise UserError where changed parameters do not go together."""
+
     def on_parameters(self, configuration: Configuration) -> None:
         """Take over changed parameters."""
 
@@ -138,6 +156,8 @@ class SlamNode(Node):
     def _reset(self, _request: Any, response: Any) -> Any:
         for subscribed in self._inputs:
             subscribed.reset()
+        for output in self._outputs:
+            output.reset()
         self.diagnostics.clear()
         self._resets += 1
         return self._answered(response, self._started_anew)

@@ -24,15 +24,27 @@ class Output:
     ) -> None:
         self.topic = topic
         self.published = 0
+        self._depth = depth
+        self._node = node
         self._diagnostics = diagnostics
         self._publisher: Any = None
         if not available(topic.type_name):
             package = topic.type_name.partition("/")[0]
             node.get_logger().info(f"{package} is not installed: {topic.name} is left out")
             return
-        self._publisher = node.create_publisher(
-            message_class(topic.type_name), name_of(topic), profile_of(topic, depth)
-        )
+        self._advertise()
+
+    def close(self) -> None:
+        """Advertise no more; what is published from now on goes nowhere."""
+        if self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
+
+    def reset(self) -> None:
+        """Take back what a latched topic has kept for those who come late."""
+        if self._publisher is not None and self.topic.latched:
+            self.close()
+            self._advertise()
 
     @property
     def available(self) -> bool:
@@ -53,3 +65,9 @@ class Output:
             self._publisher.publish(message)
             self.published += 1
         return self.available
+
+    def _advertise(self) -> None:
+        topic = self.topic
+        self._publisher = self._node.create_publisher(
+            message_class(topic.type_name), name_of(topic), profile_of(topic, self._depth)
+        )

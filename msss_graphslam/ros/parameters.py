@@ -7,6 +7,7 @@ problem is told, later the change is refused with the reason.
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -31,7 +32,9 @@ class Parameters:
 
     ``problems`` are the values of the start that could not be used, in words. A change of a group
     in ``changeable`` is handed to ``on_change`` as a whole Configuration; the other groups are
-    read-only.
+    read-only. Parameters of a group in ``flat`` are declared without the group's name; at first
+    they take the value that a file has under the full name, unless the short one is given, too.
+    ``fits`` raises UserError for a change whose values, each admitted, do not go together.
     """
 
     def __init__(
@@ -40,16 +43,20 @@ class Parameters:
         groups: Sequence[str] = (),
         changeable: Sequence[str] = (),
         on_change: Callable[[Configuration], None] | None = None,
+        flat: Sequence[str] = (),
+        fits: Callable[[Configuration], object] | None = None,
     ) -> None:
         self.problems: list[str] = []
         self._node = node
         self._on_change = on_change
+        self._fits = fits
         self._infos: dict[str, ParameterInfo] = {}
+        self._full_names: dict[str, str] = {}
         self._values: dict[str, Any] = {}
         for info in Configuration.parameters():
             group = info.name.partition(".")[0]
             if group in groups:
-                self._configured(info, read_only=group not in changeable)
+                self._configured(info, group in flat, read_only=group not in changeable)
         self._refuse_unknown(groups)
         node.add_pre_set_parameters_callback(self._in_kind)
         node.add_on_set_parameters_callback(self._checked)
@@ -84,38 +91,44 @@ class Parameters:
         )
         return self._declared(info, read_only=True)
 
-    def _configured(self, info: ParameterInfo, *, read_only: bool) -> None:
-        value = self._declared(info, read_only=read_only)
+    def _configured(self, info: ParameterInfo, is_flat: bool, *, read_only: bool) -> None:
+        full = info.name
+        if is_flat:
+            info = replace(info, name=full.partition(".")[2])
+        value = self._declared(info, read_only=read_only, instead=full)
         try:
-            Configuration().with_values({**self._values, info.name: value})
+            Configuration().with_values({**self._values, full: value})
         except UserError as error:
             self._tell(f"{error}; {info.default!r} is used")
             return
-        self._values[info.name] = value
+        self._full_names[info.name] = full
+        self._values[full] = value
 
-    def _declared(self, info: ParameterInfo, *, read_only: bool) -> Any:
-        value = self._at_start(info)
+    def _declared(self, info: ParameterInfo, *, read_only: bool, instead: str = "") -> Any:
+        value = self._at_start(info, instead)
         self._infos[info.name] = info
         self._node.declare_parameter(
             info.name, value, _descriptor(info, read_only=read_only), ignore_override=True
         )
         return value
 
-    def _at_start(self, info: ParameterInfo) -> Any:
+    def _at_start(self, info: ParameterInfo, instead: str) -> Any:
         """Return the value that was given at the start if it can be used, else the default."""
         overrides = _overrides(self._node)
-        if info.name not in overrides:
+        given = next((name for name in (info.name, instead) if name in overrides), None)
+        if given is None:
             return info.default
         try:
-            return _validated(info, overrides[info.name].value)
+            return _validated(info, overrides[given].value)
         except UserError as error:
             self._tell(f"{error}; {info.default!r} is used")
             return info.default
 
     def _refuse_unknown(self, groups: Sequence[str]) -> None:
         """Tell of names that look like ours and are none: a slip of the pen changes nothing."""
+        known = {*self._infos, *self._full_names.values()}
         for name in _overrides(self._node):
-            if name.partition(".")[0] in groups and name not in self._infos:
+            if name.partition(".")[0] in groups and name not in known:
                 try:
                     Configuration().with_values({name: 0})
                 except UserError as error:
@@ -138,7 +151,9 @@ class Parameters:
     def _checked(self, parameters: list[Parameter]) -> Any:
         try:
             changes = self._validated_changes(parameters)
-            Configuration().with_values({**self._values, **changes})
+            configuration = Configuration().with_values({**self._values, **changes})
+            if changes and self._fits is not None:
+                self._fits(configuration)
         except UserError as error:
             return make(_RESULT, successful=False, reason=str(error))
         return make(_RESULT, successful=True)
@@ -151,9 +166,11 @@ class Parameters:
 
     def _validated_changes(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
         return {
-            parameter.name: _validated(self._infos[parameter.name], parameter.value)
+            self._full_names[parameter.name]: _validated(
+                self._infos[parameter.name], parameter.value
+            )
             for parameter in parameters
-            if parameter.name in self._values
+            if parameter.name in self._full_names
         }
 
 

@@ -8,8 +8,10 @@ from msss_graphslam.messages.refusal import Refusal
 
 __all__ = ["PublisherWatch"]
 
-# What a publisher may have lost on the way and is still itself.
+# What a publisher may have lost on the way and is still itself, where there may be another, and
+# where there is none: an outage of the link takes an hour of poses.
 _WINDOW = 1000
+_OUTAGE = 200_000
 _SILENCE = 2.0
 # A middleware that does not number says so with the largest number.
 _UNNUMBERED = 2**63
@@ -46,9 +48,9 @@ class PublisherWatch:
 
     def _continues(self, missing: int, now: float) -> bool:
         """Whether the publisher followed speaks, after losing some, and no new one."""
-        is_near = 0 < missing < _WINDOW
         if not self._exclusive:
-            return is_near and self._count() <= 1
+            return 0 < missing < _OUTAGE and self._count() <= 1
+        is_near = 0 < missing < _WINDOW
         if not is_near and now - self._accepted_at <= _SILENCE and self._count() > 1:
             raise Refusal("second_publisher")
         return is_near

@@ -19,12 +19,17 @@ from benchmarks.live_tables import (
     Traffic,
     bandwidth_table,
     latency_table,
+    replay_cost_table,
     replay_table,
     usage_table,
 )
 from benchmarks.live_usage import Memory, cpu_ticks, memory_of
 
 MS = 1_000_000
+REPLAYS = [
+    Replay(20.0, 19.9, 70.0, 0, True, 500.0, {"front_end": 2.0, "back_end": 3.0}),
+    Replay(0.0, 19.0, 71.0, 1, False, 1000.0, {"front_end": 5.0, "bag_replay": 1.0}),
+]
 
 
 def test_an_answer_is_the_first_that_is_not_older() -> None:
@@ -104,11 +109,20 @@ def test_each_latency_is_held_against_its_own_bars() -> None:
 
 
 def test_a_replay_that_is_slow_loses_or_differs_is_marked() -> None:
-    rows = replay_table(
-        [Replay(20.0, 19.9, 70.0, 0, equal=True), Replay(0.0, 19.0, 71.0, 1, equal=False)]
-    ).rows
+    rows = replay_table(REPLAYS).rows
     assert rows[0] == ["20", "19.9", "70.0", "0", "yes"]
     assert rows[1] == ["as fast as it goes", "19.0 (missed)", "71.0", "1 (missed)", "no (missed)"]
+
+
+def test_cost_of_a_replay_is_that_of_1000_s_of_mission() -> None:
+    table = replay_cost_table(REPLAYS)
+    assert list(table.header) == ["node", "20", "as fast as it goes"]
+    assert table.rows == [
+        ["front_end", "4.0", "5.0"],
+        ["back_end", "6.0", "0.0"],
+        ["bag_replay", "0.0", "1.0"],
+        ["all", "10.0", "6.0"],
+    ]
 
 
 def test_bandwidth_is_sorted_and_summed_for_a_topside_back_end() -> None:

@@ -7,9 +7,11 @@ import pytest
 from echo_profiles import reading_of
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from msss_graphslam.config.groups import Segmentation
-from msss_graphslam.core.ghost_rejection import reject_ghosts
+from msss_graphslam.core.ghost_rejection import _connected, reject_ghosts
 
 CONFIG = Segmentation()
 BEAMS = 200
@@ -173,3 +175,16 @@ def test_what_is_left_was_there_before(scene, offset):
         assert after.bearing == before.bearing
         assert set(after.ranges.tolist()) <= set(before.ranges.tolist())
         assert after.ranges.size == after.levels.size == after.variances.size
+
+
+@pytest.mark.parametrize("links", [0, 1, 20, 60, 400])
+def test_surfaces_are_the_connected_components_of_the_links(links):
+    """SciPy's are the oracle: two echoes are of one surface here exactly where they are there."""
+    for seed in range(20):
+        first, second = np.random.default_rng(seed).integers(0, 60, (2, links))
+        graph = coo_array((np.ones(links), (first, second)), shape=(60, 60))
+        wanted = connected_components(graph, directed=False)[1]
+        found = _connected(60, first, second)
+        np.testing.assert_array_equal(
+            found[:, None] == found[None, :], wanted[:, None] == wanted[None, :]
+        )

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from msss_graphslam.core.compounding import between, compose, wrap
-from msss_graphslam.core.online_pose import OnlinePose
+from msss_graphslam.core.online_pose import OnlinePose, _drift_covariance
+from msss_graphslam.core.scan_generation import motion_covariances
 from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
 
 PERIOD_NS = 40_000_000
@@ -286,3 +287,12 @@ def test_depth_and_tilt_keep_dead_reckoning_s_covariance() -> None:
     covariance = online.covariance(entries[-1])
     np.testing.assert_array_equal(covariance[2:5, 2:5], np.eye(3))
     assert not covariance[np.ix_([0, 1, 5], [2, 3, 4])].any()
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_drift_is_that_of_a_scan_whose_vehicle_moves_steadily(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    motion, elapsed, root = rng.normal(size=3), rng.uniform(0.1, 20.0), rng.normal(size=(3, 3))
+    shares = np.linspace(0.0, 1.0, 9)
+    wanted = motion_covariances(shares[:, None] * motion, shares * elapsed, root @ root.T)[-1]
+    np.testing.assert_allclose(_drift_covariance(motion, elapsed, root @ root.T), wanted, 1e-10)

@@ -10,7 +10,8 @@ import pytest
 import yaml
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.live.command_table import SLAM_NODES, Setup, command_table
+from msss_graphslam.live.command_table import Setup, command_table, saving_order
+from msss_graphslam.nodes.names import SLAM_NODES
 
 
 def own_parameters(folder: Path, name: str) -> dict[str, Any]:
@@ -50,6 +51,35 @@ def test_the_replay_comes_last_and_runs_once(tmp_path: Path) -> None:
     }
     assert own_parameters(tmp_path, "bag_recorder")["output"] == str(tmp_path / "new")
     assert own_parameters(tmp_path, "back_end")["recording"] == str(tmp_path / "123")
+
+
+def test_a_replay_waits_for_those_that_it_feeds(tmp_path: Path) -> None:
+    command_table(setup_of(tmp_path, replay=tmp_path), tmp_path)
+    fed = ["dead_reckoning", "scan_generation"]
+    assert own_parameters(tmp_path, "bag_replay")["wait_for"] == fed
+
+
+def test_the_driver_of_the_head_comes_first_and_takes_the_source_of_the_configuration(
+    tmp_path: Path,
+) -> None:
+    setup = setup_of(tmp_path, driver=True)
+    commands = command_table(setup, tmp_path)
+    assert [command.name for command in commands] == ["micron_driver", *SLAM_NODES]
+    assert saving_order(setup) == ("micron_driver", *SLAM_NODES)
+    assert commands[0].returns
+    assert own_parameters(tmp_path, "micron_driver") == {"use_sim_time": False}
+
+
+def test_in_a_replay_the_driver_reads_the_recorded_bytes(tmp_path: Path) -> None:
+    setup = setup_of(tmp_path, replay=tmp_path, record=tmp_path / "new", driver=True)
+    command_table(setup, tmp_path)
+    assert own_parameters(tmp_path, "micron_driver") == {"use_sim_time": True, "source": "topic"}
+    assert own_parameters(tmp_path, "bag_replay")["wait_for"] == [
+        "micron_driver",
+        "dead_reckoning",
+        "scan_generation",
+        "bag_recorder",
+    ]
 
 
 def test_only_the_back_end_and_the_replay_know_the_bag(tmp_path: Path) -> None:

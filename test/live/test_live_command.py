@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from command_line import assert_one_line, msss
+from sample_bags import START_NS, beam_message, write_bag
 
 from msss_graphslam.cli.commands import live
 from msss_graphslam.cli.console import Console
@@ -17,8 +18,11 @@ from msss_graphslam.cli.main import main
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.errors import UserError
 from msss_graphslam.live import run as live_run
-from msss_graphslam.live.command_table import SLAM_NODES, Setup
+from msss_graphslam.live.command_table import Setup
 from msss_graphslam.live.session import Outcome
+from msss_graphslam.messages import encoding
+from msss_graphslam.nodes.names import SLAM_NODES
+from msss_graphslam.recordings.typestore import make
 from msss_graphslam.simulation.recording import SimulatedBag
 
 Captured = pytest.CaptureFixture[str]
@@ -48,7 +52,8 @@ def run(setup: Setup) -> Outcome:
 def test_it_has_help() -> None:
     done = msss("live", "--help")
     assert done.returncode == 0
-    for option in ("--out", "--replay", "--rate", "--record", "--namespace", "--set", "--json"):
+    options = ("--out", "--replay", "--rate", "--sonar", "--record", "--namespace", "--set")
+    for option in (*options, "--json"):
         assert option in done.stdout
 
 
@@ -107,6 +112,44 @@ def test_results_of_an_earlier_run_are_not_taken_for_new_ones(
     with pytest.raises(UserError, match="nothing written, back_end: no beam yet"):
         run(setup_of(tmp_path))
     assert session == list(SLAM_NODES)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "is_started"),
+    [
+        ((), False),
+        (("--sonar", "micron"), True),
+        (("--set", "micron.port=/dev/ttyS0"), True),
+        (("--sonar", "none", "--set", "micron.port=/dev/ttyS0"), False),
+        (("--set", "sonar.mount_x=0.1"), False),
+    ],
+)
+def test_the_driver_is_started_by_those_who_want_it(
+    tmp_path: Path, session: list[str], arguments: tuple[str, ...], is_started: bool
+) -> None:
+    assert main(["live", "--out", str(tmp_path / "out"), *arguments]) == ExitCode.CANNOT_GO_ON
+    assert session == ["micron_driver"] * is_started + list(SLAM_NODES)
+
+
+def test_a_replay_takes_the_driver_where_the_bag_has_only_raw_bytes(
+    tmp_path: Path, session: list[str]
+) -> None:
+    raw = encoding.raw_bytes(make, b"@", START_NS)
+    ping = beam_message(0)
+    both = [("/sonar/raw", raw, START_NS), ("/sonar/ping", ping, START_NS)]
+    for name, messages in (("raw", both[:1]), ("both", both)):
+        bag = write_bag(tmp_path / name, messages)
+        with pytest.raises(UserError, match="nothing written"):
+            run(setup_of(tmp_path, replay=bag))
+    nodes = [*SLAM_NODES, "bag_replay"]
+    assert session == ["micron_driver", *nodes, *nodes]
+
+
+def test_a_replay_does_not_take_a_sonar(tmp_path: Path, capsys: Captured) -> None:
+    bag = write_bag(tmp_path / "dive")
+    arguments = ["live", "--out", str(tmp_path / "out"), "--replay", str(bag), "--sonar", "micron"]
+    assert main(arguments) == ExitCode.CANNOT_GO_ON
+    assert "--sonar is for a head" in capsys.readouterr().err
 
 
 def test_a_node_that_did_not_come_back_is_exit_code_1(capsys: Captured) -> None:

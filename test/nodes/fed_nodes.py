@@ -67,6 +67,9 @@ class Fed:
     def send(self, topic: Topic, message: Any) -> None:
         self._publishers[topic].publish(message)
 
+    def listens_to(self, topic: Topic) -> bool:
+        return self._test.node.count_subscribers(name_of(topic)) > 0
+
     def trigger(self, service: str) -> Any:
         """Return the answer of the node's service."""
         kind = message_class("std_srvs/srv/Trigger")

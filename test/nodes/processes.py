@@ -20,10 +20,10 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-__all__ = ["Domain", "NodeProcess", "TestNode", "domain", "wait_until"]
+__all__ = ["LIMIT", "Domain", "NodeProcess", "TestNode", "domain", "wait_until"]
 
 ROOT = Path(__file__).parents[2]
-LIMIT = 60.0
+LIMIT = 180.0
 
 
 def wait_until(

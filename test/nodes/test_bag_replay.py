@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Replay into real subscribers: bit by bit, in order, at their pace, to the very end."""
 
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Iterator
@@ -9,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from nodes.processes import Domain, NodeProcess, TestNode, domain, wait_until
+from nodes.processes import LIMIT, Domain, NodeProcess, TestNode, domain, wait_until
 from sample_bags import BEAM_PERIOD_NS, START_NS, sensor_messages, write_bag
 
 from msss_graphslam.messages import topics
@@ -185,15 +186,34 @@ def test_a_fast_replay_stays_within_a_second_of_dead_reckoning(tmp_path: Path, a
         assert newest.told_ns >= START_NS + 249 * BEAM_PERIOD_NS - 500_000_000
 
 
+def test_a_fast_replay_stays_within_seconds_of_scan_generation(tmp_path: Path, at: Domain) -> None:
+    bag = write_bag(tmp_path / "dive", sensor_messages(500))
+    ahead: list[int] = []
+    with Listener(at) as listener:
+        newest = Newest(listener, topics.SCAN_PROGRESS)
+
+        def take() -> None:
+            if newest.stamp_ns:
+                ahead.append(newest.stamp_ns - newest.told_ns)
+                newest.tell(min(newest.stamp_ns, newest.told_ns + 500_000_000))
+
+        listener.node.create_timer(0.02, take)
+        with replay(at, bag) as process:
+            assert process.wait() == 0
+            assert "2500 messages, 0 stalls" in process.output
+        assert 4_000_000_000 < max(ahead) <= 6_000_000_000
+        assert newest.told_ns >= START_NS + 499 * BEAM_PERIOD_NS - 500_000_000
+
+
 class Newest:
     """How far the sensors have come, and what was told of it."""
 
-    def __init__(self, listener: Listener) -> None:
+    def __init__(self, listener: Listener, topic: topics.Topic = topics.SETTLED_ODOMETRY) -> None:
         self.told_ns = START_NS
         self._received = listener.received
-        kind = message_class(topics.SETTLED_ODOMETRY.type_name)
-        name = topics.SETTLED_ODOMETRY.name
-        self._publisher = listener.node.create_publisher(kind, name, STREAM)
+        self._topic = topic
+        kind = message_class(topic.type_name)
+        self._publisher = listener.node.create_publisher(kind, topic.name, STREAM)
 
     @property
     def stamp_ns(self) -> int:
@@ -202,8 +222,9 @@ class Newest:
 
     def tell(self, stamp_ns: int) -> None:
         self.told_ns = stamp_ns
-        message = make(topics.SETTLED_ODOMETRY.type_name)
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 10**9)
+        message = make(self._topic.type_name)
+        header = getattr(message, "header", message)
+        header.stamp.sec, header.stamp.nanosec = divmod(stamp_ns, 10**9)
         self._publisher.publish(message)
 
 
@@ -242,6 +263,31 @@ def test_at_the_end_each_node_saves_when_it_is_through(tmp_path: Path, at: Domai
         assert listener.called == ["dead_reckoning/save"] * 3 + ["back_end/save"]
         assert "dead_reckoning is done: call 3" in process.output
         assert listener.count == 250
+
+
+def test_a_node_that_is_started_again_while_it_saves_is_asked_again(
+    tmp_path: Path, at: Domain
+) -> None:
+    bag = write_bag(tmp_path / "dive")
+    asked, over = threading.Event(), threading.Event()
+
+    def hang(_: Any, response: Any) -> Any:
+        """Take the question and give no answer, as one that has died."""
+        asked.set()
+        over.wait()
+        return response
+
+    with Listener(at) as listener, TestNode(at, "first") as first:
+        listener.answer("dead_reckoning/save")
+        first.node.create_service(TRIGGER, "back_end/save", hang)
+        with replay(at, bag, conclude=True) as process:
+            assert asked.wait(LIMIT)
+            listener.answer("back_end/save")
+            code = process.wait()
+            over.set()
+        assert code == 0
+        assert listener.called == ["dead_reckoning/save", "back_end/save"]
+        assert "back_end is done: call 1" in process.output
 
 
 def test_each_lap_begins_with_a_reset_from_the_end_to_the_beginning(

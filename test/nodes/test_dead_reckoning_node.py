@@ -140,3 +140,25 @@ def test_after_a_reset_a_dive_begins_anew(node: Fed) -> None:
 
 def newest_odometry(node: Fed) -> Any:
     return decoding.true_pose(node.heard(topics.ODOM)[-1])
+
+
+def test_beams_are_kept_for_who_comes_late_but_not_beyond_a_reset(node: Fed) -> None:
+    beams = [message for topic, message in dive() if topic is topics.SONAR_PING]
+    for message in beams[:30]:
+        node.send(topics.SONAR_PING, message)
+    wait_until(lambda: node.diagnostic("received/sonar/ping") == "30", "the beams taken")
+    node.hear(topics.RECENT_BEAMS)
+    wait_until(lambda: len(node.heard(topics.RECENT_BEAMS)) == 30, "the beams again")
+    for kept, sent in zip(node.heard(topics.RECENT_BEAMS), beams, strict=False):
+        found, wanted = decoding.beam(kept), decoding.beam(sent)
+        assert (found.stamp_ns, found.bearing) == (wanted.stamp_ns, wanted.bearing)
+        np.testing.assert_array_equal(found.ranges, wanted.ranges)
+        np.testing.assert_array_equal(found.intensities, wanted.intensities)
+    assert node.trigger("reset").success
+    node.send(topics.SONAR_PING, beams[30])
+    wait_until(lambda: len(node.heard(topics.RECENT_BEAMS)) == 31, "one more")
+    node.hear(topics.RECENT_BEAMS)  # a second listener gets what is kept: that one
+    wait_until(lambda: len(node.heard(topics.RECENT_BEAMS)) >= 32, "the one kept")
+    node.send(topics.SONAR_PING, beams[31])
+    wait_until(lambda: len(node.heard(topics.RECENT_BEAMS)) >= 34, "the next, twice")
+    assert len(node.heard(topics.RECENT_BEAMS)) == 34

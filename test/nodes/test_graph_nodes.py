@@ -54,6 +54,7 @@ class Surroundings(TestNode):
         for topic in (
             topics.GRAPH_POSES,
             topics.CORRECTION,
+            topics.SCANS_TAKEN,
             topics.CONSTRAINTS,
             topics.KEYFRAMES,
             topics.MARKERS,
@@ -153,7 +154,9 @@ def test_a_node_that_was_killed_comes_back_to_the_same_graph(at: Domain, killed:
             around.wait_for_keyframes(usable())
             around.save("front_end")
         known = around.newest()
+        taken = link_decoding.moment(around.heard[topics.SCANS_TAKEN.name][-1])
     assert known is not None
+    assert taken == scans()[-1].end_stamp_ns + (not scans()[-1].complete)
     assert known.stamps_ns.tolist() == [f.scan.stamp_ns for f in estimated("full").keyframes]
 
 

@@ -144,3 +144,23 @@ def test_pictures_of_a_running_mission_are_those_of_its_logbook() -> None:
     trajectory = known.trajectory()
     at = np.searchsorted(trajectory.stamps_ns, path.stamps_ns)
     np.testing.assert_allclose(trajectory.planar[at], path.planar, atol=1e-9)
+
+
+def test_it_is_whole_where_scans_and_keyframes_fit_together() -> None:
+    made, _ = mission(0)
+    assert not made.is_whole
+    for scan, report in zip(scans(), reports(), strict=True):
+        made.add_scan(scan)
+        assert not made.is_whole
+        made.take(report)
+        assert made.is_whole
+    made.add_scan(
+        replace(scans()[-1], beam_stamps_ns=scans()[-1].beam_stamps_ns + 1, usable=False)
+    )
+    assert made.is_whole
+
+
+def test_keyframes_alone_are_not_whole() -> None:
+    made, _ = mission(0)
+    made.take(reports()[0])
+    assert not made.is_whole

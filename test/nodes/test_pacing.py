@@ -109,7 +109,7 @@ def test_the_lead_is_counted_in_sensor_time_whatever_the_logs_clock(offset_ns: i
 
 
 def test_what_is_told_twice_is_no_news() -> None:
-    lead = Lead()
+    lead = Lead(SECOND)
     assert [lead.settled(1), lead.settled(1), lead.settled(2)] == [True, False, True]
 
 
@@ -137,7 +137,7 @@ def test_a_release_allows_the_limit_once_more() -> None:
 
 
 def test_it_is_over_when_dead_reckoning_has_come_to_the_end() -> None:
-    lead = Lead()
+    lead = Lead(SECOND)
     assert lead.is_over
     lead.sent(START_NS, stamped(START_NS))
     lead.sent(START_NS + SECOND, stamped(START_NS + SECOND))

@@ -117,4 +117,43 @@ def test_a_beam_without_odometry_is_waited_for_but_not_for_ever(node: Fed) -> No
         return bool(answers[-1].success)
 
     wait_until(ask, "saved")
-    assert {one.message for one in answers[:-1]} == {"waiting for odometry"}
+    told = {one.message for one in answers[:-1]}
+    assert {"waiting for odometry"} <= told
+    assert told <= {"waiting for odometry", "waiting for beams of before the start"}
+
+
+def test_started_again_it_goes_on_with_the_beams_that_were_kept() -> None:
+    """What a predecessor has learned and made is neither missing nor made twice."""
+    scans = expected_scans()
+    with fed("scan_generation") as node:
+        for topic in (topics.SONAR_PING, topics.SETTLED_ODOMETRY):
+            node.offer(topic)
+        for topic in (topics.RECENT_BEAMS, topics.SCANS_TAKEN):
+            node.offer(topic)
+        for topic in (topics.SCAN_BEAMS, topics.SCAN_PROGRESS):
+            node.hear(topic)
+        send_odometry(node, odometry())
+        for message in BEAMS[-10:]:
+            node.send(topics.SONAR_PING, message)
+        for message in BEAMS[:-5]:
+            node.send(topics.RECENT_BEAMS, message)
+        node.send(topics.SCANS_TAKEN, encoding.moment(make, scans[0].end_stamp_ns))
+        wait_until(lambda: node.trigger("save").success, "the rest made")
+        wait_until(lambda: len(node.heard(topics.SCAN_BEAMS)) == len(scans) - 1, "all scans")
+        found = [link_decoding.scan_beams(message) for message in node.heard(topics.SCAN_BEAMS)]
+        for scan, wanted in zip(found, scans[1:], strict=True):
+            for field in fields(Scan):
+                ours, theirs = getattr(scan, field.name), getattr(wanted, field.name)
+                np.testing.assert_array_equal(ours, theirs)
+        told = link_decoding.moment(node.heard(topics.SCAN_PROGRESS)[-1])
+        assert told > scans[-1].stamp_ns
+
+
+def test_after_a_reset_nothing_is_resumed(node: Fed) -> None:
+    assert node.trigger("reset").success
+    for topic in (topics.RECENT_BEAMS, topics.SCANS_TAKEN):
+        wait_until(lambda topic=topic: not node.listens_to(topic), f"{topic.name} ignored")
+    send_odometry(node, odometry())
+    for message in BEAMS:
+        node.send(topics.SONAR_PING, message)
+    wait_until(lambda: len(node.heard(topics.SCAN_BEAMS)) == 2, "two whole turns")

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """When slow work is done, and when nothing is on its way any more."""
 
-from msss_graphslam.nodes.timing import Stillness, Throttle
+import pytest
+
+from msss_graphslam.nodes.timing import Leisure, Stillness, Throttle
 
 
 class Clock:
@@ -69,3 +71,38 @@ def test_who_asks_a_long_time_later_waits_again() -> None:
     still.holds()
     clock.now += 60.0
     assert not still.holds()
+
+
+def leisure_after_two_keyframes(clock: Clock) -> Leisure:
+    """One came 8 s ago, the other just now."""
+    leisure = Leisure(clock)
+    leisure.end()
+    clock.now += 8.0
+    leisure.end()
+    return leisure
+
+
+@pytest.mark.parametrize(
+    ("since", "lasts"), [(0.0, True), (3.9, True), (4.1, False), (15.9, False), (16.1, True)]
+)
+def test_there_is_leisure_after_a_keyframe_and_when_none_comes(since: float, lasts: bool) -> None:
+    clock = Clock()
+    leisure = leisure_after_two_keyframes(clock)
+    clock.now += since
+    assert leisure.lasts is lasts
+
+
+def test_there_is_leisure_as_long_as_nothing_has_come() -> None:
+    clock = Clock()
+    leisure = Leisure(clock)
+    clock.now += 1.0
+    assert leisure.lasts
+
+
+def test_the_newest_interval_counts() -> None:
+    clock = Clock()
+    leisure = leisure_after_two_keyframes(clock)
+    clock.now += 2.0
+    leisure.end()
+    clock.now += 1.5
+    assert not leisure.lasts

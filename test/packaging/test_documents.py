@@ -22,6 +22,7 @@ DOCUMENTS = [
     "CONTRIBUTING.md",
     "bags/README.md",
     "docs/live.md",
+    "docs/micron.md",
     "docs/paper_to_code.md",
     "docs/recordings.md",
     "docs/reproduction.md",

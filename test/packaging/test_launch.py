@@ -51,7 +51,7 @@ def started(launched: Launched, name: str) -> Started:
 @pytest.fixture(params=[SLAM, REPLAY])
 def everything(request: pytest.FixtureRequest) -> Launched:
     """Each launch file with all it can start."""
-    return run(request.param, bag="pond", record="dive.mcap")
+    return run(request.param, bag="pond", record="dive.mcap", sonar="raw")
 
 
 @pytest.mark.parametrize("name", executables())
@@ -106,6 +106,27 @@ def test_what_is_asked_for_reaches_the_nodes() -> None:
     assert started(launched, "back_end").parameters["output"] == "out"
     assert started(launched, "front_end").parameters["estimator"] == "uspic"
     assert {node.namespace for node in launched.nodes} == {"auv"}
+
+
+def test_the_driver_of_the_head_is_started_when_asked_for() -> None:
+    assert "micron_driver" not in names(run(SLAM, sonar="none"))
+    launched = run(SLAM, sonar="micron", namespace="auv")
+    assert names(launched) == ["micron_driver", *SLAM_NODES]
+    driver = started(launched, "micron_driver")
+    assert (driver.parameters, driver.namespace) == ({"use_sim_time": False}, "auv")
+    with pytest.raises(ArgumentError, match="sonar"):
+        run(SLAM, sonar="ping360")
+
+
+def test_recorded_bytes_go_through_the_driver() -> None:
+    launched = run(REPLAY, bag="pond", sonar="raw")
+    assert names(launched) == ["micron_driver", *SLAM_NODES, "bag_replay"]
+    assert started(launched, "micron_driver").parameters == {
+        "use_sim_time": True,
+        "source": "topic",
+    }
+    with pytest.raises(ArgumentError, match="sonar"):
+        run(REPLAY, bag="pond", sonar="micron")
 
 
 def test_a_replay_runs_on_its_own_clock_and_ends_everything() -> None:

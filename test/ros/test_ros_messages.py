@@ -66,6 +66,7 @@ def _encoded() -> dict[str, tuple[Any, ...]]:
     answer = GraphPoses(STAMP + np.arange(8), nodes, nodes / 3, np.ones((8, 3, 3)))
     return {
         "laser_scan": (beam, "sonar_link", 0.04),
+        "raw_bytes": (b"@\n", STAMP),
         "imu": (inertial, "imu_link", 0.1, 0.2),
         "fluid_pressure": (STAMP, np.float64(123456.0), "base_link"),
         "twist": (velocity, "base_link"),
@@ -78,6 +79,7 @@ def _encoded() -> dict[str, tuple[Any, ...]]:
         "pose": (STAMP, POSE, COVARIANCE),
         "occupancy_grid": (STAMP, grid, np.float32(0.1), np.array([-1.0, -2.0])),
         "graph_markers": (STAMP, nodes, [EDGE]),
+        "moment": (STAMP,),
         "settled_odometry": (STAMP, [odometry, odometry]),
         "scan_beams": (scan(),),
         "graph_poses": (answer,),

@@ -165,3 +165,67 @@ def test_a_node_may_have_parameters_of_its_own(
     assert configured.node.get_parameter("rate").value == rate
     assert len(configured.parameters.problems) == told
     assert not configured.set(rate=30.0).successful
+
+
+class Flat:
+    """A node whose group ``sensors`` has parameters without the group's name."""
+
+    def __init__(self, graph: Any) -> None:
+        self.changes: list[Configuration] = []
+        self.node = graph.add(Node("driver"))
+        self.parameters = Parameters(
+            self.node, ("sensors",), ("sensors",), self.changes.append, flat=("sensors",)
+        )
+
+
+def test_a_flat_group_is_declared_by_short_names_alone(graph: Any) -> None:
+    flat = Flat(graph)
+    assert flat.node.get_parameter("water_density").value == 1000.0
+    assert not flat.node.has_parameter("sensors.water_density")
+    assert flat.node.set_parameters_atomically([Parameter("water_density", value=1025)]).successful
+    assert flat.parameters.configuration.sensors.water_density == 1025.0
+    assert [changed.sensors.water_density for changed in flat.changes] == [1025.0]
+
+
+@pytest.mark.parametrize(
+    ("assignments", "density"),
+    [
+        (("water_density:=1020.0",), 1020.0),
+        (("sensors.water_density:=1010.0",), 1010.0),
+        (("sensors.water_density:=1010.0", "water_density:=1020.0"), 1020.0),
+        (("water_density:=1020.0", "sensors.water_density:=1010.0"), 1020.0),
+    ],
+)
+def test_a_flat_group_takes_the_full_name_of_a_file_too(
+    started: Start, assignments: tuple[str, ...], density: float
+) -> None:
+    flat = Flat(started(*given(*assignments)))
+    assert flat.parameters.configuration.sensors.water_density == density
+    assert flat.node.get_parameter("water_density").value == density
+    assert flat.parameters.problems == []
+
+
+@pytest.mark.parametrize(
+    ("assignment", "problem"),
+    [
+        ("water_density:=1.0", "water_density = 1.0: must lie in [900, 1100]; 1000.0 is used"),
+        ("sensors.water_density:=1.0", "water_density = 1.0: must lie in [900, 1100]; 1000.0"),
+        ("sensors.water_densiti:=1.0", "unknown parameter 'sensors.water_densiti'; did you mean"),
+    ],
+)
+def test_a_bad_value_of_a_flat_group_is_told(
+    started: Start, assignment: str, problem: str
+) -> None:
+    flat = Flat(started(*given(assignment)))
+    assert flat.parameters.configuration == Configuration()
+    (told,) = flat.parameters.problems
+    assert problem in told
+
+
+def test_a_bad_change_of_a_flat_group_is_refused_by_its_short_name(graph: Any) -> None:
+    flat = Flat(graph)
+    result = flat.node.set_parameters_atomically([Parameter("water_density", value="salt")])
+    assert not result.successful
+    patience = flat.node.set_parameters_atomically([Parameter("patience", value=0.1)])
+    assert not patience.successful
+    assert flat.changes == []

@@ -317,3 +317,52 @@ def test_a_change_of_parameters_that_fails_ends_nothing(bench: Bench) -> None:
     assert result.successful
     assert bench.node.diagnostics.refused["internal_error"] == 1
     assert bench.node.parameters.configuration.dead_reckoning.patience == 3.0
+
+
+class Talker(SlamNode):
+    """Offers a latched topic and one that is not."""
+
+    def __init__(self) -> None:
+        super().__init__("talker")
+        self.latched = self.offer(topics.CORRECTION)
+        self.stream = self.offer(topics.ODOM)
+
+
+def test_after_a_reset_nothing_of_before_is_given_to_who_comes_late(graph: Any) -> None:
+    node, other = graph.add(Talker()), graph.add(Node("other"))
+    odometry = topics.CORRECTION.type_name
+    node.latched.publish(make(odometry, child_frame_id="before"))
+    reset = message_class("std_srvs/srv/Trigger")
+    assert graph.answer(other.create_client(reset, "talker/reset"), reset.Request()).success
+    heard: list[str] = []
+    other.create_subscription(
+        message_class(odometry),
+        topics.CORRECTION.name,
+        lambda message: heard.append(message.child_frame_id),
+        LATCHED,
+    )
+    node.latched.publish(make(odometry, child_frame_id="after"))
+    graph.until(lambda: heard)
+    assert heard == ["after"]
+    assert other.count_publishers(topics.CORRECTION.name) == 1
+
+
+def test_who_listens_hears_on_after_a_reset(graph: Any) -> None:
+    node, other = graph.add(Talker()), graph.add(Node("other"))
+    heard: list[str] = []
+    for topic in (topics.CORRECTION, topics.ODOM):
+        other.create_subscription(
+            message_class(topic.type_name),
+            topic.name,
+            lambda message: heard.append(message.child_frame_id),
+            LATCHED if topic.latched else STREAM,
+        )
+    graph.until(lambda: node.latched.subscribers and node.stream.subscribers)
+    node.latched.publish(make(topics.CORRECTION.type_name, child_frame_id="latched before"))
+    graph.until(lambda: heard)
+    for output in (node.latched, node.stream):
+        output.reset()
+    node.latched.publish(make(topics.CORRECTION.type_name, child_frame_id="latched"))
+    node.stream.publish(make(topics.ODOM.type_name, child_frame_id="stream"))
+    graph.until(lambda: len(heard) == 3)
+    assert sorted(heard[1:]) == ["latched", "stream"]

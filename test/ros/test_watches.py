@@ -70,9 +70,15 @@ def test_several_publishers_are_all_taken_where_they_may_be() -> None:
     assert [watch.check(number, 0.0) for number in (500, 1, 501, 2, 3)] == [0] * 5
 
 
-@pytest.mark.parametrize("exclusive", [True, False])
-def test_a_new_publisher_has_lost_nothing(exclusive: bool) -> None:
-    watch = PublisherWatch(lambda: 1, exclusive=exclusive)
+@pytest.mark.parametrize(("number", "lost"), [(200_007, 199_999), (200_008, 0)])
+def test_what_an_outage_takes_of_the_only_publisher_is_counted(number: int, lost: int) -> None:
+    watch = PublisherWatch(lambda: 1, exclusive=False)
+    watch.check(7, 0.0)
+    assert watch.check(number, 0.0) == lost
+
+
+def test_a_new_publisher_has_lost_nothing() -> None:
+    watch = PublisherWatch(lambda: 1)
     assert [watch.check(number, 0.0) for number in (7, 5000, 5002, 1, 2)] == [0, 0, 1, 0, 0]
 
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the whole share: missions, made once a session, and a domain each."""
 
+import fcntl
+import os
 from collections.abc import Callable, Iterator
 from functools import cache
 
@@ -15,11 +17,16 @@ __all__ = ["tf2_environment"]
 
 @pytest.fixture(scope="session")
 def mission(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Mission]:
-    """Give the short mission of a world by its name."""
+    """Give the short mission of a world by its name; it is made once for all workers."""
+    base = tmp_path_factory.getbasetemp()
+    # With workers each has a folder of its own, in one that they share.
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
     @cache
     def made(name: str) -> Mission:
-        return make_mission(name, tmp_path_factory.mktemp(name))
+        with (shared / f"mission_{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            return make_mission(name, shared / f"mission_{name}")
 
     return made
 

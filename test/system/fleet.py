@@ -16,7 +16,7 @@ __all__ = ["NODES", "Fleet", "Surroundings"]
 NODES = ("dead_reckoning", "scan_generation", "front_end", "back_end")
 """In the order in which data goes through them."""
 
-_REPLAY_LIMIT = 90.0
+_REPLAY_LIMIT = 300.0
 
 
 class Surroundings(Domain):

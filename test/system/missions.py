@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Short missions as bags, and what the offline run makes of them."""
 
+import shutil
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +12,8 @@ import numpy as np
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.evaluation.assessment import assess
 from msss_graphslam.evaluation.summary import summarise
-from msss_graphslam.offline.estimation import estimate, recipe_named
+from msss_graphslam.offline.estimation import estimate
+from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.reader import open_recording
 from msss_graphslam.recordings.writer import BagWriter
@@ -38,9 +40,14 @@ class Mission:
 
 
 def make_mission(name: str, folder: Path) -> Mission:
-    """Simulate a short mission in the world, and run it offline."""
-    bag = simulate(_small_world(name), 1, folder).bag
-    return run_offline(bag, folder / f"{name}_offline")
+    """Simulate a short mission in the world, and run it offline, unless the folder has it."""
+    if not folder.exists():
+        unfinished = folder.with_suffix(".unfinished")
+        shutil.rmtree(unfinished, ignore_errors=True)
+        simulate(_small_world(name), 1, unfinished).bag.rename(unfinished / "bag")
+        run_offline(unfinished / "bag", unfinished / "offline")
+        unfinished.rename(folder)
+    return Mission(folder / "bag", folder / "offline")
 
 
 def altered(

@@ -52,7 +52,7 @@ class Witness(TestNode):
     def wait_for_row(self, node: str, key: str, least: float = 1.0) -> float:
         """Wait until the row has at least this value, and return it."""
         try:
-            wait_until(lambda: self.row(node, key) >= least, f"{key} of {node}", 15.0)
+            wait_until(lambda: self.row(node, key) >= least, f"{key} of {node}")
         except AssertionError as error:
             raise AssertionError(f"{error}; has {self.rows.get(f'/{node}')}") from None
         return self.row(node, key)
@@ -70,7 +70,7 @@ class Witness(TestNode):
 
     def wait_until_taken(self, publisher: Any) -> None:
         """Wait until all that was published has arrived."""
-        assert publisher.wait_for_all_acked(Duration(seconds=10.0))
+        assert publisher.wait_for_all_acked(Duration(seconds=60.0))
 
     def _subscribe(self, topic: topics.Topic, take: Any) -> None:
         if available(topic.type_name):

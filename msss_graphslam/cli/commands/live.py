@@ -16,6 +16,7 @@ from msss_graphslam.cli.options import (
     add_output,
     configuration_of,
 )
+from msss_graphslam.errors import UserError
 
 if TYPE_CHECKING:
     from msss_graphslam.live.session import Outcome
@@ -39,6 +40,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         default=1.0,
         metavar="R",
         help="how many times real time to replay at, 0 as fast as it goes (default 1)",
+    )
+    parser.add_argument(
+        "--sonar",
+        choices=("micron", "none"),
+        help="micron: start the driver of the head, too, with the parameters micron.*; none:"
+        " others publish sonar/ping (default: micron if --set names one of micron.*, else none;"
+        " of a replay the bag decides)",
     )
     add_estimator(parser)
     parser.add_argument(
@@ -64,11 +72,23 @@ def execute(arguments: Namespace, console: Console) -> ExitCode:
         rate=arguments.rate,
         record=arguments.record,
         namespace=arguments.namespace,
+        driver=_wants_driver(arguments),
     )
     with console.progress() as progress:
         outcome = run(setup, console.remark, progress)
     code = show_result(console, setup.output, setup.replay)
     return _judged(console, outcome, code)
+
+
+def _wants_driver(arguments: Namespace) -> bool:
+    """Return whether the head's driver is to be started; a replay finds that out by itself."""
+    if arguments.replay is not None:
+        if arguments.sonar is not None:
+            raise UserError("--sonar is for a head; of a replay the bag decides")
+        return False
+    if arguments.sonar is not None:
+        return bool(arguments.sonar == "micron")
+    return any(name.startswith("micron.") for name, _ in arguments.set)
 
 
 def _judged(console: Console, outcome: "Outcome", code: ExitCode) -> ExitCode:

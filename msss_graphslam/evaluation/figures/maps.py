@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.colors import ListedColormap
 
+from msss_graphslam.core.compounding import transform_points
 from msss_graphslam.core.types import Array
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment, dead_reckoned_points
 from msss_graphslam.evaluation.figures.style import Plate, colour, label, map_extent, map_figure
 from msss_graphslam.evaluation.figures.trajectories import draw_ends, draw_points, draw_track
+from msss_graphslam.evaluation.map_consistency import seen_again
 
 __all__ = ["maps", "occupancy"]
 
@@ -88,5 +90,24 @@ def _caption(assessments: Sequence[Assessment]) -> str:
     )
     return (
         "The same echoes, placed by each estimator's poses. Walls seen from several places fall"
-        f" on one another where the poses are right.{sharpness}"
+        f" on one another where the poses are right.{sharpness}{_agreement(assessments)}"
     )
+
+
+def _agreement(assessments: Sequence[Assessment]) -> str:
+    """Say how many points lie where another scan has one, by estimator."""
+    reckoned = [
+        (scan.odometry, scan.points) for scan in assessments[-1].record.estimate.first_scans
+    ]
+    placed = {DEAD_RECKONING: reckoned} | {
+        run.estimator: [(frame.pose, frame.scan.points) for frame in run.record.estimate.keyframes]
+        for run in assessments
+    }
+    shares = {
+        name: seen_again([transform_points(*scan) for scan in scans])
+        for name, scans in placed.items()
+    }
+    known = ", ".join(
+        f"{label(name)} {100 * share:.0f} %" for name, share in shares.items() if share is not None
+    )
+    return f" Points within 0.25 m of another scan's: {known}." if known else ""

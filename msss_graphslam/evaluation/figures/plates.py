@@ -18,10 +18,10 @@ from msss_graphslam.evaluation.figures.style import RC, Plate
 from msss_graphslam.evaluation.figures.timing import timing
 from msss_graphslam.evaluation.figures.trajectories import trajectories
 from msss_graphslam.evaluation.figures.uncertainty import uncertainty
+from msss_graphslam.evaluation.pictures import DPI
 
-__all__ = ["DPI", "comparison_plates", "png", "run_plates"]
+__all__ = ["comparison_plates", "png", "run_plates"]
 
-DPI = 150
 _NO_VERSION = {"Software": None}
 
 

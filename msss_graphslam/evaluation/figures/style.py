@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""How every figure looks: one colour an estimator, safe for the colour-blind (Okabe and Ito)."""
+"""How every figure looks."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from msss_graphslam.core.types import Array
+from msss_graphslam.evaluation.wording import ACCENT, colour, label, phrase
 
 __all__ = [
     "ACCENT",
@@ -27,14 +28,8 @@ __all__ = [
     "phrase",
 ]
 
-TRUTH, MAP, MUTED, ACCENT = "#111111", "#76838f", "#5b6672", "#0072b2"
+TRUTH, MAP, MUTED = "#111111", "#76838f", "#5b6672"
 REFUSALS = ("#d55e00", "#cc79a7", "#e69f00", "#56b4e9", "#009e73")
-_ESTIMATORS = {
-    "dead_reckoning": "#d55e00",
-    "uspic": "#cc79a7",
-    "chen2015": "#009e73",
-    "full": "#0072b2",
-}
 RC: dict[Any, Any] = {
     "figure.dpi": 150,
     "font.family": "DejaVu Sans",
@@ -72,21 +67,6 @@ class Plate:
     title: str
     caption: str
     figure: Figure
-
-
-def colour(estimator: str) -> str:
-    """Return the estimator's colour, the same in every figure."""
-    return _ESTIMATORS.get(estimator, ACCENT)
-
-
-def phrase(name: str) -> str:
-    """Return a snake_case name in words."""
-    return name.replace("_", " ")
-
-
-def label(estimator: str) -> str:
-    """Return the estimator's name as a legend says it."""
-    return phrase(estimator)
 
 
 def minutes(stamps_ns: Array | np.ndarray, start_ns: int) -> Array:

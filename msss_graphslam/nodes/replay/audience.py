@@ -10,10 +10,13 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from msss_graphslam.messages import topics
+from msss_graphslam.nodes.names import DRIVER
+from msss_graphslam.nodes.replay.relayed_pings import RelayedPings
 
 __all__ = ["Audience"]
 
 _LISTENS_TO = {
+    DRIVER: (topics.SONAR_RAW.name,),
     "dead_reckoning": tuple(
         topic.name for topic in (topics.SONAR_PING, topics.IMU, topics.PRESSURE, topics.DVL)
     ),
@@ -41,6 +44,8 @@ class Audience:
         self.names = names
         self._node = node
         self._publishers = publishers
+        is_relayed = DRIVER in names and topics.SONAR_PING.name not in publishers
+        self._relayed = RelayedPings(node) if is_relayed else None
 
     def missing(self, but: Collection[str] = ()) -> dict[str, str]:
         """Return by node what it does not listen to yet; ``but`` are nodes left out."""
@@ -64,7 +69,11 @@ class Audience:
             if any(endpoint.node_name == name for endpoint in endpoints)
             and self._are_matched(topic, endpoints)
         }
-        wanted = [topic for topic in _LISTENS_TO.get(name, ()) if topic in self._publishers]
+        known = _LISTENS_TO.get(name, ())
+        wanted = [topic for topic in known if topic in self._publishers]
+        if self._relayed and topics.SONAR_PING.name in known:
+            wanted.append(topics.SONAR_PING.name)
+            joined |= {topics.SONAR_PING.name} if self._relayed.reach(name) else set()
         if wanted:
             return [topic for topic in wanted if topic not in joined]
         return [] if joined else ["any topic"]

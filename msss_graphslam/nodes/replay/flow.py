@@ -4,32 +4,32 @@
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
-from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy
 
-from msss_graphslam.messages import link_decoding, topics
-from msss_graphslam.messages.refusal import Refusal
-from msss_graphslam.nodes.conclusion import Spin
+from msss_graphslam.messages import topics
 from msss_graphslam.nodes.replay.audience import Audience
-from msss_graphslam.nodes.replay.backlog import Backlog
-from msss_graphslam.nodes.replay.lead import Lead, header_stamp_ns
+from msss_graphslam.nodes.replay.follower import Follower, GraphFollower
 from msss_graphslam.nodes.replay.output import Output
+from msss_graphslam.nodes.replay.receipt import receipt_ns
+from msss_graphslam.nodes.trigger import Spin
 from msss_graphslam.recordings.mcap_reading import RawMessage
-from msss_graphslam.ros.messages import message_class
-from msss_graphslam.ros.qos import profile_of
 
 __all__ = ["Flow"]
 
 _SENSORS = (topics.SONAR_PING, topics.IMU, topics.PRESSURE, topics.DVL)
+# With the batch that is sent before the next look less than half a second, after which dead
+# reckoning would take beams that came first for a sign that the IMU has gone.
+_RECKONING_LIMIT_NS = 300_000_000
+# Much less than the beams that dead reckoning keeps for a scan generation that is started again.
+_SCANNING_LIMIT_NS = 5_000_000_000
+# Beams that come late must not look like a sonar that is silent: much less than its patience.
+_DRIVING_LIMIT_NS = 1_000_000_000
 _STALL = 5.0
 _TELL_EVERY = 5.0
 _LOOK_EVERY = 0.5
 _ACKNOWLEDGEMENT = 0.02
 _QUIET = 0.3
-_NEWEST = 10
 
 
 class Flow:
@@ -59,23 +59,32 @@ class Flow:
         self._patience = patience
         self._spin = spin
         self._log = node.get_logger()
-        self._lead = Lead()
-        self._backlog = Backlog()
         self._news = 0
         self._looked = 0.0
         self._members: frozenset[bytes] = frozenset()
         self._is_impatient = False
-        self._listen(node)
+        note = self._note_news
+        self._reckoning = Follower(node, topics.SETTLED_ODOMETRY, _RECKONING_LIMIT_NS, note)
+        self._scanning = Follower(node, topics.SCAN_PROGRESS, _SCANNING_LIMIT_NS, note)
+        self._driving = Follower(node, topics.RAW_TAKEN, _DRIVING_LIMIT_NS, note)
+        self._graph = GraphFollower(node, note)
 
     def restart(self) -> None:
         """Forget what was sent: the next message is the first."""
-        self._lead.restart()
-        self._backlog.restart()
+        self._driving.restart()
+        self._reckoning.restart()
+        self._scanning.restart()
+        self._graph.restart()
 
     def sent(self, raw: RawMessage) -> None:
         """Note what was just published."""
-        if topics.find(raw.channel.topic) in _SENSORS:
-            self._lead.sent(raw.log_ns, raw.data)
+        topic = topics.find(raw.channel.topic)
+        if topic in _SENSORS:
+            self._reckoning.sent(raw)
+        if topic is topics.SONAR_RAW:
+            self._driving.sent_at(raw.log_ns, receipt_ns(raw))
+        if topic is topics.SONAR_PING:
+            self._scanning.sent(raw)
 
     def gather(self, patience: float | None = None) -> None:
         """Wait until all nodes listen; with ``patience`` [s] go on without those that do not."""
@@ -98,64 +107,35 @@ class Flow:
             self._looked = now
             self.given_up -= self.given_up - set(self._audience.missing())
             self.gather(self._patience)
-        if not self._wait(self._is_free):
-            self._sit_out()
+        self._wait(self._is_free)
 
     def drain(self) -> None:
-        """Wait until everything has arrived and dead reckoning has worked it off."""
-        if not self._wait(lambda: self._output.all_acknowledged(_ACKNOWLEDGEMENT)):
+        """Wait until everything has arrived and those that tell have worked it off."""
+        if not self._goes_on_until(lambda: self._output.all_acknowledged(_ACKNOWLEDGEMENT)):
             self._log.warning("not everything that was sent has been acknowledged")
-        if self._has_settled() and not self._wait(lambda: self._lead.is_over):
-            self._log.warning("dead reckoning has not reached the end of the bag")
+        self._await_end(self._driving, "the driver")
+        self._await_end(self._reckoning, "dead reckoning")
+        self._await_end(self._scanning, "scan generation")
         news = -1
         while news != self._news:
             news = self._news
             self._spin_for(_QUIET)
 
-    def _listen(self, node: Node) -> None:
-        kind = message_class(topics.SETTLED_ODOMETRY.type_name)
-        profile = profile_of(topics.SETTLED_ODOMETRY, _NEWEST)
-        profile.durability = DurabilityPolicy.VOLATILE
-        node.create_subscription(kind, topics.SETTLED_ODOMETRY.name, self._take, profile, raw=True)
-        self._node = node
-        self._follow_graph(node)
+    def _await_end(self, follower: Follower, name: str) -> None:
+        self._wait(lambda: follower.is_through or not follower.is_heard)
+        if not follower.is_through:
+            self._log.warning(f"{name} has not reached the end of the bag")
 
-    def _follow_graph(self, node: Node) -> None:
-        """Hear of scans from now on; of corrections the newest, which may be out already."""
-        for topic, take in (
-            (topics.SCAN_BEAMS, self._take_scan),
-            (topics.CORRECTION, self._take_correction),
-        ):
-            kind, profile = message_class(topic.type_name), profile_of(topic, _NEWEST)
-            if topic is topics.SCAN_BEAMS:
-                profile.durability = DurabilityPolicy.VOLATILE
-            node.create_subscription(kind, topic.name, take, profile)
-
-    def _take_scan(self, message: Any) -> None:
-        with suppress(Refusal):
-            self._backlog.scanned(link_decoding.scan_beams(message))
-
-    def _take_correction(self, message: Any) -> None:
-        with suppress(Refusal):
-            self._backlog.corrected(link_decoding.correction(message).stamp_ns)
-            self._news += 1
-
-    def _is_graph_behind(self) -> bool:
-        listens = self._node.count_publishers(topics.CORRECTION.name) > 0
-        return self._backlog.is_too_long and bool(listens)
-
-    def _has_settled(self) -> bool:
-        return bool(self._node.count_publishers(topics.SETTLED_ODOMETRY.name) > 0)
-
-    def _take(self, data: Any) -> None:
-        stamp_ns = header_stamp_ns(data)
-        if stamp_ns is not None and self._lead.settled(stamp_ns):
-            self._news += 1
-            self._is_impatient = False
+    def _note_news(self) -> None:
+        self._news += 1
+        self._is_impatient = False
 
     def _is_free(self) -> bool:
-        if self._has_settled() and not self._is_impatient:
-            return not (self._lead.is_too_long or self._is_graph_behind())
+        followed = (self._driving, self._reckoning, self._scanning, self._graph)
+        if any(follower.is_behind for follower in followed):
+            return False
+        if self._reckoning.is_heard:
+            return True
         return not self._output.is_full or self._is_acknowledged()
 
     def _is_acknowledged(self) -> bool:
@@ -169,17 +149,35 @@ class Flow:
         return done or self._is_impatient
 
     def _wait(self, condition: Callable[[], bool]) -> bool:
-        """Wait for the condition; return False after a time without any progress."""
+        """Wait for the condition, also through the restart of a node; return whether it holds."""
+        if self._goes_on_until(condition):
+            return True
+        if not self._is_renewed():
+            self._sit_out(condition)
+        if self._is_renewed():
+            self._log.info("a node was started again")
+            self._release()
+            return self._goes_on_until(condition)
+        return condition()
+
+    def _goes_on_until(self, condition: Callable[[], bool]) -> bool:
+        """Wait while there is progress; a node that was started again ends the wait, too."""
         since, news = time.monotonic(), self._news
+        looked = since
         while not condition():
             self._spin(0.01)
+            now = time.monotonic()
             if news != self._news:
-                since, news = time.monotonic(), self._news
-            if time.monotonic() - since > _STALL:
+                since, news = now, self._news
+            if now - since > _STALL:
                 return False
+            if now - looked > _LOOK_EVERY:
+                looked = now
+                if self._is_renewed():
+                    return False
         return True
 
-    def _sit_out(self) -> None:
+    def _sit_out(self, condition: Callable[[], bool]) -> None:
         """Wait for progress, or for a node that was started again, but not for ever."""
         self.stalls += 1
         self._log.warning(
@@ -187,18 +185,32 @@ class Flow:
             " a node to go on, or to be started again"
         )
         until = time.monotonic() + self._patience
-        while not self._is_free() and time.monotonic() < until and not self._is_renewed():
+        while not condition() and not self._is_renewed():
             self._spin(0.05)
-        self._members = self._audience.members()
-        self._lead.release()
-        self._backlog.restart()
+            if time.monotonic() > until:
+                self._give_up_those_behind()
+                return
+
+    def _give_up_those_behind(self) -> None:
+        for follower in (self._driving, self._reckoning, self._scanning):
+            if not follower.is_through:
+                follower.give_up()
+        self._graph.restart()
+        self._release()
         self._is_impatient = True
 
+    def _release(self) -> None:
+        """Send on, whatever those who listen have told so far."""
+        self._members = self._audience.members()
+        self._driving.release()
+        self._reckoning.release()
+        self._scanning.release()
+
     def _is_renewed(self) -> bool:
-        """Whether other subscriptions than at the last progress listen."""
+        """Whether subscriptions listen that did not at the last progress."""
         if self._audience.missing(self.given_up):
             return False
-        return self._audience.members() != self._members
+        return bool(self._audience.members() - self._members)
 
     def _give_up(self, missing: dict[str, str]) -> None:
         self.given_up |= set(missing)

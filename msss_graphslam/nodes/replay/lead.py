@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""How far a replay runs ahead of dead reckoning. No ROS."""
+"""How far a replay runs ahead of a node that takes what is sent. No ROS."""
 
 import struct
 from collections import deque
@@ -8,11 +8,8 @@ from statistics import median_low
 
 __all__ = ["Lead", "header_stamp_ns"]
 
-# With the batch that is sent before the next look less than half a second, after which dead
-# reckoning would take beams that came first for a sign that the IMU has gone.
-_LIMIT_NS = 300_000_000
 _OFFSETS = 15
-# Dead reckoning tells of its progress ten times a second, behind its window for late data.
+# Progress is told ten times a second, by dead reckoning behind its window for late data.
 _REPORT_NS = 500_000_000
 _STAMP = {1: struct.Struct("<iI"), 0: struct.Struct(">iI")}
 
@@ -26,13 +23,13 @@ def header_stamp_ns(data: bytes) -> int | None:
 
 
 class Lead:
-    """Sensor time between what was sent and what dead reckoning has taken.
+    """Sensor time between what was sent and what the node has taken.
 
     Log times may differ from stamps by a constant. It is the median over some messages, so that
     a senseless stamp does not stop the replay.
     """
 
-    def __init__(self, limit_ns: int = _LIMIT_NS) -> None:
+    def __init__(self, limit_ns: int) -> None:
         self._limit_ns = limit_ns
         self.restart()
 
@@ -45,7 +42,10 @@ class Lead:
 
     def sent(self, log_ns: int, data: bytes) -> None:
         """Note a sensor's message as it goes out."""
-        stamp_ns = header_stamp_ns(data)
+        self.sent_at(log_ns, header_stamp_ns(data))
+
+    def sent_at(self, log_ns: int, stamp_ns: int | None) -> None:
+        """Note a message with that stamp, None for one that says none."""
         if stamp_ns is not None:
             self._offsets.append(stamp_ns - log_ns)
         if self._allowed_ns is None:
@@ -53,14 +53,14 @@ class Lead:
         self._sent_ns = log_ns
 
     def settled(self, stamp_ns: int) -> bool:
-        """Note how far dead reckoning is; return whether that is news."""
+        """Note how far the node is; return whether that is news."""
         if stamp_ns == self._settled_ns:
             return False
         self._settled_ns = stamp_ns
         return True
 
     def release(self) -> None:
-        """Allow the limit once more from here, whatever dead reckoning says."""
+        """Allow the limit once more from here, whatever the node says."""
         self._allowed_ns = self._sent_ns
 
     @property
@@ -73,14 +73,14 @@ class Lead:
 
     @property
     def is_over(self) -> bool:
-        """Whether dead reckoning has taken all that was sent, but for its last report."""
+        """Whether the node has taken all that was sent, but for its last report."""
         if self._sent_ns is None:
             return True
         return self._taken_ns is not None and self._sent_ns - self._taken_ns <= _REPORT_NS
 
     @property
     def _taken_ns(self) -> int | None:
-        """Log time of what dead reckoning has taken."""
+        """Log time of what the node has taken."""
         if self._settled_ns is None:
             return None
         return self._settled_ns - (median_low(self._offsets) if self._offsets else 0)

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""The publishers of a replay: serialised messages go out as they are."""
+"""The publishers of a replay: serialised messages go out as they are.
+
+But for raw bytes without a time of receipt: they get the log's.
+"""
 
 import time
 from collections import Counter
@@ -12,6 +15,7 @@ from rclpy.publisher import Publisher
 
 from msss_graphslam.messages import topics
 from msss_graphslam.messages.topics import Topic
+from msss_graphslam.nodes.replay.receipt import with_receipt
 from msss_graphslam.nodes.replay.selection import relative_name
 from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.reader import RecordedTopic
@@ -41,7 +45,9 @@ class Output:
         """Publish one message; return whether it can be one at all."""
         if raw.channel.message_encoding != "cdr" or len(raw.data) < 4:
             return False
-        self._by_bag_name[raw.channel.topic].publish(raw.data)
+        is_raw = topics.find(raw.channel.topic) == topics.SONAR_RAW
+        data = with_receipt(raw.data, raw.log_ns) if is_raw else raw.data
+        self._by_bag_name[raw.channel.topic].publish(data)
         self._open[raw.channel.topic] += 1
         return True
 

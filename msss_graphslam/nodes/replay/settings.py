@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of a replay."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from typing import Any
 
 from rclpy.node import Node
 
 from msss_graphslam.errors import UserError
+from msss_graphslam.messages import topics
+from msss_graphslam.nodes.names import DRIVER, FED
 from msss_graphslam.ros.messages import make
 
 __all__ = ["ReplaySettings"]
@@ -19,8 +22,9 @@ _DESCRIBED: dict[str, tuple[Any, str]] = {
     "loop": (False, "begin anew at the end, the nodes reset before each lap"),
     "topics": ([""], "topics to replay; none: the inputs of the package that the bag has"),
     "wait_for": (
-        ["dead_reckoning", "scan_generation"],
-        "nodes in the own namespace that must listen before anything is sent; [''] for none",
+        list(FED),
+        "nodes in the own namespace that must listen before anything is sent; [''] for none;"
+        " by default also micron_driver where sonar/raw is replayed",
     ),
     "clock": (True, "publish /clock"),
     "conclude": (True, "at the end have every node work off what it holds, and save"),
@@ -53,6 +57,12 @@ class ReplaySettings:
         if not values["bag"]:
             raise UserError("parameter bag is missing: give an mcap file or a rosbag2 folder")
         return cls(**values)
+
+    def awaited(self, replayed: Collection[str]) -> list[str]:
+        """Return the nodes to wait for, given the names of the topics that are replayed."""
+        if self.wait_for == list(FED) and topics.SONAR_RAW.name in replayed:
+            return [DRIVER, *FED]
+        return self.wait_for
 
 
 def _declare(node: Node, name: str) -> Any:
