@@ -51,6 +51,7 @@ class DeadReckoning:
         self._inertial_ns: int | None = None
         self._compass_ns: int | None = None
         self._unsensed = 0.0
+        self._measured = False
         self._refused_since: dict[str, int] = {}
 
     def process(self, measurement: Measurement) -> list[Odometry]:
@@ -70,6 +71,7 @@ class DeadReckoning:
         depth = next((entry.z for entry in pending if isinstance(entry, Depth)), 0.0)
         self._filter = KalmanFilter(self._config, depth, attitude, variance)
         self._stamp_ns = pending[0].stamp_ns
+        self._measured = any(isinstance(entry, Inertial | BodyVelocity) for entry in pending)
         return [odometry for entry in pending for odometry in self._advance(self._filter, entry)]
 
     def resume(self, stamp_ns: int, pose: Array) -> None:
@@ -103,7 +105,9 @@ class DeadReckoning:
         if measurement.stamp_ns < self._stamp_ns:
             self._refused["dead_reckoning_late"] += 1
             return []
-        if isinstance(measurement, Inertial | BodyVelocity) or not self._has_inertial(measurement):
+        of_motion = isinstance(measurement, Inertial | BodyVelocity)
+        self._measured |= of_motion
+        if of_motion or not self._has_inertial(measurement):
             self._predict(ekf, measurement)
         match measurement:
             case Inertial():
@@ -128,9 +132,15 @@ class DeadReckoning:
                 rates = 0.5 * (rates + self._rates)
         if rates is None:
             self._unsensed += interval
-            ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise)
+            ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise, self._drift_noise)
         else:
             ekf.predict(interval, rates, self._config.gyro_noise)
+
+    @property
+    def _drift_noise(self) -> float:
+        # Deviation: a speed is assumed for a vehicle that keeps its course. Of one that no sensor
+        # of motion has been heard of, nothing is known.
+        return 0.0 if self._measured else self._config.drift_noise
 
     def _has_inertial(self, now: Measurement) -> bool:
         return self._recent(self._inertial_ns, now.stamp_ns)
@@ -199,6 +209,7 @@ class DeadReckoning:
         rates = np.zeros(3) if self._rates is None else self._rates.copy()
         twist_covariance = np.zeros((6, 6))
         twist_covariance[:3, :3] = ekf.covariance[VELOCITY_ERROR, VELOCITY_ERROR]
+        twist_covariance[[0, 1], [0, 1]] += self._drift_noise**2 / TURN_S
         twist_covariance[5, 5] = self._yaw_rate_variance()
         return Odometry(
             stamp_ns=self._stamp_ns,

@@ -17,7 +17,11 @@ from msss_graphslam.core.graph_construction import (
     odometry_constraint,
 )
 from msss_graphslam.core.matchers import ScanMatcher
-from msss_graphslam.core.motion_feedback import MotionFeedback, offset_motion
+from msss_graphslam.core.motion_feedback import (
+    MotionFeedback,
+    offset_motion,
+    persistence_of,
+)
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scan_correction import correct_scan
 from msss_graphslam.core.scan_generation import (
@@ -57,8 +61,7 @@ class FrontEnd:
         self._recipe = recipe
         self._stage = stage
         self._matcher = recipe.matcher(configuration.matching) if recipe.matcher else None
-        correlation_time = configuration.dead_reckoning.velocity_correlation_time
-        self._feedback = MotionFeedback(correlation_time)
+        self._feedback = MotionFeedback(persistence_of(configuration.dead_reckoning))
         self.nodes: list[Node] = []
         self.poses = np.empty((0, 3))
 

@@ -91,10 +91,13 @@ class KalmanFilter:
         """The estimated body velocity (3,) [m/s]."""
         return self._assumed_velocity + self.state[VELOCITY_ERROR]
 
-    def predict(self, interval: float, rates: Array, rate_noise: float) -> None:
+    def predict(
+        self, interval: float, rates: Array, rate_noise: float, drift_noise: float = 0.0
+    ) -> None:
         """Propagate over ``interval`` [s] with body ``rates`` (3,), equations 7 and 8.
 
-        ``rate_noise`` is the angle random walk [rad/sqrt(s)] of the rates.
+        ``rate_noise`` is the angle random walk [rad/sqrt(s)] of the rates, ``drift_noise`` that of
+        the place [m/sqrt(s)] beyond the slow error of the velocity.
         """
         if interval <= 0.0:
             return
@@ -112,6 +115,7 @@ class KalmanFilter:
         compass_decay = math.exp(-interval / config.compass_correlation_time)
         jacobian[COMPASS_BIAS, COMPASS_BIAS] = compass_decay
         noise = np.zeros(SIZE)
+        noise[:2] = drift_noise**2 * interval
         noise[ATTITUDE] = rate_noise**2 * interval
         noise[VELOCITY_ERROR] = self._stationary * (1.0 - decay**2)
         noise[COMPASS_BIAS] = config.compass_drift**2 * (1.0 - compass_decay**2)

@@ -9,6 +9,9 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.beam_log import BeamLog
+from msss_graphslam.core.joint_pairs import first_reach, pairs_of
+from msss_graphslam.core.joint_smoothing import Reach, Smoothed, smooth
+from msss_graphslam.core.motion_feedback import persistence_of
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.refinement import refine, whole_graph
 from msss_graphslam.core.scan_correction import corrected_scans
@@ -84,17 +87,33 @@ class Logbook:
         matcher, config = self._recipe.matcher, self._configuration
         if not self._recipe.goes_beyond or matcher is None or len(self.poses) < 2:
             back_end = whole_graph(self.poses, self.constraints, config.back_end)
-        else:
-            with self._stage("refinement"):
-                refined = refine(
-                    self.scans[: len(self.poses)],
-                    self.poses,
-                    self.constraints,
-                    self._learned,
-                    matcher(config.matching),
-                    config.back_end,
-                    progress,
-                )
+            return [back_end.covariance(number) for number in range(len(self.poses))]
+        with self._stage("refinement"):
+            refined = refine(
+                self.scans[: len(self.poses)],
+                self.poses,
+                self.constraints,
+                self._learned,
+                matcher(config.matching),
+                config.back_end,
+                lambda share: progress(0.5 * share),
+            )
             self.poses, self.constraints = refined.poses, refined.constraints
-            back_end = refined.back_end
-        return [back_end.covariance(number) for number in range(len(self.poses))]
+            smoothed = self._smooth(lambda share: progress(0.5 + 0.5 * share))
+        self.poses = smoothed.poses
+        self.twist_error = TwistError(smoothed.twist, smoothed.twist_covariance)
+        return list(smoothed.covariances)
+
+    def _smooth(self, progress: Callable[[float], None]) -> Smoothed:
+        config = self._configuration
+        learned = self._learned.mean if self._learned else np.zeros(3)
+        scans, narrow = self.scans[: len(self.poses)], config.matching.pairing_distance
+        return smooth(
+            scans,
+            self.poses,
+            learned,
+            pairs_of(self.constraints, config.association.most),
+            persistence_of(config.dead_reckoning),
+            Reach(first_reach(scans, self.constraints, narrow), narrow),
+            progress,
+        )

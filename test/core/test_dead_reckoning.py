@@ -122,6 +122,27 @@ def test_without_an_imu_the_beams_clock() -> None:
     assert run.last.covariance[5, 5] == pytest.approx(doubt, rel=1e-6)
 
 
+def test_without_any_sensor_of_motion_the_speed_is_a_guess() -> None:
+    run = Run().feed([beam(time) for time in times(0.0, 20.0)])
+    new = CONFIG.drift_noise**2 / 10.0
+    slow = [CONFIG.surge_noise**2, CONFIG.sway_noise**2]
+    np.testing.assert_allclose(np.diag(run.last.twist_covariance)[:2], np.add(slow, new))
+    assert run.last.covariance[1, 1] > CONFIG.drift_noise**2 * 20.0
+
+
+@pytest.mark.parametrize("at", [0.0, 0.5, 10.0])
+def test_once_an_imu_was_heard_the_assumed_speed_holds(at: float) -> None:
+    """From the start if it speaks during the alignment, and through its silence."""
+    beams = [beam(time) for time in times(0.02, 20.0)]
+    feed = sorted([*beams, imu(at)], key=lambda entry: entry.stamp_ns)
+    run = Run().feed(feed)
+    surge = run.last.twist_covariance[0, 0]
+    assert surge == pytest.approx(CONFIG.surge_noise**2, rel=1e-3)
+    drifted = CONFIG.drift_noise**2 * (at if at > CONFIG.alignment_time else 0.0)
+    usual = (CONFIG.surge_noise * 20.0) ** 2
+    assert run.last.covariance[0, 0] == pytest.approx(drifted + usual, abs=0.6 * usual)
+
+
 def test_the_beams_clock_while_the_imu_is_silent() -> None:
     samples = [entry for entry in turning(30.0, 0.0) if not 10.0 < seconds_of(entry) < 20.0]
     run = Run().feed([*samples, *[beam(time) for time in times(0.02, 30.0)]])

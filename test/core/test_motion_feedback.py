@@ -2,30 +2,37 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
 
+from msss_graphslam.config.groups import DeadReckoning
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.motion_feedback import MotionFeedback, offset_motion
+from msss_graphslam.core.motion_feedback import (
+    MotionFeedback,
+    Persistence,
+    offset_motion,
+    persistence_of,
+)
 from msss_graphslam.core.types import Array
 
 TIME = 100.0
 STATIONARY = np.diag([0.03, 0.01, 0.002]) ** 2
+SLOW = Persistence(TIME, np.diag(STATIONARY))
 
 
 def test_starts_with_what_dead_reckoning_says_of_itself() -> None:
-    feedback = MotionFeedback(TIME)
+    feedback = MotionFeedback(SLOW)
     feedback.predict(10.0, STATIONARY)
     np.testing.assert_array_equal(feedback.offset, np.zeros(3))
     np.testing.assert_array_equal(feedback.covariance, STATIONARY)
 
 
 def test_the_stationary_covariance_stays() -> None:
-    feedback = MotionFeedback(TIME)
+    feedback = MotionFeedback(SLOW)
     for _ in range(50):
         feedback.predict(10.0, STATIONARY)
     np.testing.assert_allclose(feedback.covariance, STATIONARY)
 
 
 def test_update_is_the_product_of_two_gaussians() -> None:
-    feedback = MotionFeedback(TIME)
+    feedback = MotionFeedback(SLOW)
     feedback.predict(10.0, STATIONARY)
     seen, doubt = np.array([0.04, -0.01, 0.001]), np.diag([0.02, 0.02, 0.001]) ** 2
     feedback.update(seen, doubt)
@@ -38,7 +45,7 @@ def test_update_is_the_product_of_two_gaussians() -> None:
 
 def test_a_sharp_word_is_believed_and_a_dull_one_is_not() -> None:
     for deviation, share in ((1e-6, 1.0), (1e3, 0.0)):
-        feedback = MotionFeedback(TIME)
+        feedback = MotionFeedback(SLOW)
         feedback.predict(10.0, STATIONARY)
         feedback.update(np.array([0.05, 0.02, 0.003]), deviation**2 * np.eye(3))
         np.testing.assert_allclose(
@@ -47,7 +54,7 @@ def test_a_sharp_word_is_believed_and_a_dull_one_is_not() -> None:
 
 
 def test_what_was_learned_fades_with_the_correlation_time() -> None:
-    feedback = MotionFeedback(TIME)
+    feedback = MotionFeedback(SLOW)
     feedback.predict(10.0, STATIONARY)
     feedback.update(np.array([0.05, 0.0, 0.0]), 1e-12 * np.eye(3))
     learned = feedback.offset[0]
@@ -58,10 +65,38 @@ def test_what_was_learned_fades_with_the_correlation_time() -> None:
     )
 
 
+def test_what_is_new_in_every_turn_does_not_persist() -> None:
+    feedback = MotionFeedback(Persistence(TIME, np.array([0.03**2, 0.005**2, 0.0])))
+    feedback.predict(10.0, STATIONARY)
+    seen = np.array([0.05, 0.02, 0.003])
+    feedback.update(seen, 1e-12 * np.eye(3))
+    feedback.predict(TIME, STATIONARY)
+    kept = np.exp(-1.0) * np.array([1.0, 0.25, 0.0])
+    np.testing.assert_allclose(feedback.offset, kept * seen, rtol=1e-4, atol=1e-12)
+    np.testing.assert_allclose(
+        np.diag(feedback.covariance), (1.0 - kept**2) * np.diag(STATIONARY), rtol=1e-3
+    )
+
+
+def test_more_slow_error_than_there_is_error_persists_whole() -> None:
+    persistence = Persistence(TIME, np.ones(3))
+    np.testing.assert_allclose(persistence.over(TIME, STATIONARY), np.exp(-1.0))
+    np.testing.assert_allclose(persistence.over(TIME, np.zeros((3, 3))), np.exp(-1.0))
+
+
+def test_persistence_follows_the_parameters_of_dead_reckoning() -> None:
+    persistence = persistence_of(DeadReckoning())
+    blind = np.diag([0.2, 0.2, 0.05]) ** 2
+    sensed = np.diag([0.03, 0.01, 0.0005]) ** 2
+    decay = np.exp(-0.1)
+    np.testing.assert_allclose(persistence.over(10.0, sensed), decay)
+    assert (persistence.over(10.0, blind) < 0.05).all()
+
+
 def test_many_words_converge_on_a_constant_error() -> None:
     rng = np.random.default_rng(0)
     error, doubt = np.array([0.03, -0.008, 0.001]), np.diag([0.01, 0.01, 0.001])
-    feedback = MotionFeedback(1e6)
+    feedback = MotionFeedback(Persistence(1e6, np.diag(STATIONARY)))
     for _ in range(400):
         feedback.predict(10.0, STATIONARY)
         feedback.update(error + doubt @ rng.normal(size=3), doubt**2)

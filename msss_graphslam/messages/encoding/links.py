@@ -3,7 +3,6 @@
 """What the nodes tell each other, without loss; ``messages.link_decoding`` gives it back."""
 
 from collections.abc import Sequence
-from functools import cache
 from math import isfinite
 from typing import Any
 
@@ -166,25 +165,18 @@ def _text(numbers: Array) -> str:
 
 def _cloud(make: Make, stamp_ns: int, frame_id: str, rows: NDArray[np.void]) -> Any:
     step = rows.dtype.itemsize
-    maker: Any = make  # can be looked up, which its protocol does not say
     return make(
         "sensor_msgs/msg/PointCloud2",
         header=header(make, stamp_ns, frame_id),
         height=1,
         width=len(rows),
-        fields=_fields(maker, rows.dtype),
+        fields=[_field(make, rows.dtype, name) for name in rows.dtype.names or ()],
         is_bigendian=False,
         point_step=step,
         row_step=step * len(rows),
         data=np.frombuffer(rows.tobytes(), dtype=np.uint8),
         is_dense=True,
     )
-
-
-@cache
-def _fields(make: Make, layout: np.dtype[np.void]) -> list[Any]:
-    """Return the sensor_msgs/PointFields of a layout, the same ones for every message."""
-    return [_field(make, layout, name) for name in layout.names or ()]
 
 
 def _field(make: Make, layout: np.dtype[np.void], name: str) -> Any:
