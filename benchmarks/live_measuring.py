@@ -80,7 +80,7 @@ def replay(bag: Path, rate: float, scratch: Path, reference: Path) -> Replay:
         whole=whole,
         lost=lost_messages(rows),
         equal=filecmp.cmp(output / _TRAJECTORY, reference, shallow=False),
-        mission=mission,
+        mission=1e-9 * mission,
         cpu=cpu,
     )
 

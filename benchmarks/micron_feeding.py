@@ -8,12 +8,14 @@ import time
 import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.micron_stream import head_data
 from msss_graphslam.messages import encoding, topics
-from msss_graphslam.micron.packets import TURN, HeadControl, HeadData, HeadStatus
+from msss_graphslam.micron.packets import TURN, HeadData
 
 __all__ = ["BAUDRATE", "BINS", "RATE", "feed_a_terminal", "feed_a_topic"]
 
@@ -78,27 +80,9 @@ def _packets(stop: threading.Event) -> Iterator[bytes]:
 
 
 def _packet(index: int) -> HeadData:
-    control = HeadControl.EIGHT_BIT | HeadControl.CONTINUOUS | HeadControl.SCAN_RIGHT
     codes = np.random.default_rng(index).integers(0, 256, BINS).astype(np.uint8)
-    return HeadData(
-        device_type=0x11,
-        status=HeadStatus.EIGHT_BIT_DATA,
-        sweep=0,
-        control=control | HeadControl.RAW | HeadControl.HAS_MOTOR | HeadControl.REPLY_ASL,
-        range_scale=200,
-        transmit=0,
-        gain=84,
-        slope=0,
-        ad_span=255,
-        ad_low=0,
-        heading_offset=0,
-        ad_interval=104,
-        left_limit=1,
-        right_limit=TURN - 1,
-        step=_STEP,
-        bearing=(index * _STEP) % TURN,
-        data=codes.tobytes(),
-    )
+    beam = head_data(codes.tobytes(), (index * _STEP) % TURN)
+    return replace(beam, range_scale=200, ad_interval=104, step=_STEP)
 
 
 @contextmanager

@@ -3,12 +3,14 @@
 """What a Micron's port brings: packets of a head that turns steadily, with their receipts."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from benchmarks.micron_stream import head_data
 from msss_graphslam.messages import encoding
-from msss_graphslam.micron.packets import TURN, HeadControl, HeadData, HeadStatus
+from msss_graphslam.micron.packets import TURN, HeadData
 from msss_graphslam.micron.timing import reply_delay
 from msss_graphslam.recordings.typestore import make
 
@@ -23,26 +25,8 @@ BAUDRATE = 115200
 def packet(index: int, bins: int = 40) -> HeadData:
     """Return the index-th beam of a head that turns by 1.8 degrees to starboard."""
     codes = np.random.default_rng(index).integers(0, 256, bins).astype(np.uint8)
-    control = HeadControl.EIGHT_BIT | HeadControl.CONTINUOUS | HeadControl.SCAN_RIGHT
-    return HeadData(
-        device_type=0x11,
-        status=HeadStatus.EIGHT_BIT_DATA,
-        sweep=0,
-        control=control | HeadControl.RAW | HeadControl.HAS_MOTOR | HeadControl.REPLY_ASL,
-        range_scale=100,
-        transmit=0,
-        gain=84,
-        slope=0,
-        ad_span=255,
-        ad_low=0,
-        heading_offset=0,
-        ad_interval=521,
-        left_limit=1,
-        right_limit=6399,
-        step=STEP,
-        bearing=(TURN // 2 + index * STEP) % TURN,
-        data=codes.tobytes(),
-    )
+    beam = head_data(codes.tobytes(), (TURN // 2 + index * STEP) % TURN)
+    return replace(beam, range_scale=100, ad_interval=521, step=STEP)
 
 
 def packets(count: int = 50, start_ns: int = START_NS) -> Iterator[tuple[bytes, int]]:
