@@ -11,10 +11,9 @@ from typing import Any, Self
 
 from nodes.processes import Domain, NodeProcess
 
-__all__ = ["NODES", "Fleet", "Surroundings"]
+from msss_graphslam.nodes.names import SLAM_NODES
 
-NODES = ("dead_reckoning", "scan_generation", "front_end", "back_end")
-"""In the order in which data goes through them."""
+__all__ = ["Fleet", "Surroundings"]
 
 _REPLAY_LIMIT = 300.0
 
@@ -78,7 +77,7 @@ class Fleet:
 
     def start(self, *names: str, arguments: Sequence[str] = (), **parameters: Any) -> None:
         """Start the named nodes, or all; ``arguments`` are further ones for ROS."""
-        for name in names or NODES:
+        for name in names or SLAM_NODES:
             given = dict(parameters)
             if name == "back_end":
                 given["output"] = self.output

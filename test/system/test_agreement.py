@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from nodes.processes import Domain
 from system.comparison import assert_same, refused, summary
-from system.fleet import NODES, Fleet
+from system.fleet import Fleet
 from system.missions import Mission
+
+from msss_graphslam.nodes.names import SLAM_NODES
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +44,7 @@ def test_the_order_in_which_nodes_start_does_not_matter(
 ) -> None:
     with Fleet(own_domain, tmp_path / "live") as fleet:
         replay = fleet.replay(pond.bag, 0)
-        fleet.start(*reversed(NODES))
+        fleet.start(*reversed(SLAM_NODES))
         fleet.finish(replay)
     assert_same(fleet.output, pond.offline)
 
@@ -52,7 +54,7 @@ def test_a_late_start_does_not_matter(
     pond: Mission, own_domain: Domain, tmp_path: Path, late: tuple[str, ...]
 ) -> None:
     with Fleet(own_domain, tmp_path / "live") as fleet:
-        fleet.start(*(name for name in NODES if name not in late))
+        fleet.start(*(name for name in SLAM_NODES if name not in late))
         replay = fleet.replay(pond.bag, 20)
         replay.wait_for_output("replayed 10 %")
         fleet.start(*late)

@@ -17,6 +17,9 @@ from msss_graphslam.recordings.reader import open_recording
 
 pytestmark = pytest.mark.slow
 
+_PROMISED = 3.0
+"""So long a node may take to end [s]; after that it is killed, and the test fails."""
+
 _FILES = (
     "trajectory.tum",
     "online.tum",
@@ -45,7 +48,7 @@ def test_a_signal_ends_every_node(
         for node in (*fleet.nodes.values(), replay):
             node.signal(number)
         for name, node in {**fleet.nodes, "bag_replay": replay}.items():
-            assert node.wait() == 0, f"{name}:\n{node.output}"
+            assert node.wait(_PROMISED) == 0, f"{name}:\n{node.output}"
             assert "Traceback" not in node.output, f"{name}:\n{node.output}"
 
 

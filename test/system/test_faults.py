@@ -10,12 +10,13 @@ import pytest
 from nodes.processes import Domain
 from system.comparison import assert_same, refused
 from system.faulty_messages import Change, clouds, reports, truncated, with_faults, without
-from system.fleet import NODES, Fleet
+from system.fleet import Fleet
 from system.missions import Mission, altered
 from system.witness import Witness
 
 from msss_graphslam.messages import topics
 from msss_graphslam.messages.topics import Topic
+from msss_graphslam.nodes.names import SLAM_NODES
 from msss_graphslam.ros.messages import make, message_class
 from msss_graphslam.ros.qos import profile_of
 
@@ -141,7 +142,7 @@ def test_parameters_out_of_range(own_domain: Domain, tmp_path: Path) -> None:
             result = _set(witness, node, name, value)
             assert not result.successful
             assert name in result.reason
-        for node in NODES:
+        for node in SLAM_NODES:
             assert witness.call(message_class("std_srvs/srv/Trigger"), f"/{node}/reset").success
             assert fleet.nodes[node].is_running
         fleet.nodes["dead_reckoning"].wait_for_output("surge_noise.*0.03 is used")
