@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from msss_graphslam.config.groups import Mapping
 from msss_graphslam.core.compounding import transform_points
@@ -48,7 +48,7 @@ def map_points(keyframes: Sequence[Keyframe]) -> Array:
 
 
 def occupancy_grid(
-    keyframes: Sequence[Keyframe], config: Mapping, sonar_position: Array | None = None
+    keyframes: Sequence[Keyframe], config: Mapping, sonar_position: ArrayLike = (0.0, 0.0)
 ) -> OccupancyGrid:
     """Return the occupancy grid of the scans in their final layout.
 
@@ -64,9 +64,9 @@ def occupancy_grid(
     config
         The cells and the beam's model.
     sonar_position
-        (2,) ``sonar_link`` in ``base_link`` [m], from where the beams start; default the origin.
+        (2,) ``sonar_link`` in ``base_link`` [m], from where the beams start.
     """
-    position = np.zeros(2) if sonar_position is None else np.asarray(sonar_position, dtype=float)
+    position = np.asarray(sonar_position, dtype=float)
     scans = [
         (rays_of(keyframe, position), transform_points(keyframe.pose, keyframe.scan.points).T)
         for keyframe in keyframes

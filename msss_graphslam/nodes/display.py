@@ -4,8 +4,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.mapping import OccupancyGrid, map_points, occupancy_grid
 from msss_graphslam.core.types import Array, Trajectory
@@ -50,7 +48,7 @@ class Display:
     def show_maps(self, mission: Mission, configuration: Configuration) -> None:
         """Publish points and grid of the scans as the trajectory lays them out."""
         keyframes = mission.keyframes()
-        grid = occupancy_grid(keyframes, configuration.mapping, _mount(configuration))
+        grid = occupancy_grid(keyframes, configuration.mapping, configuration.sonar.mount_position)
         self.show_map(mission.newest_ns, map_points(keyframes), grid)
 
     def show_map(self, stamp_ns: int, points: Array, grid: OccupancyGrid) -> None:
@@ -61,14 +59,10 @@ class Display:
     def map_message(self, mission: Mission, configuration: Configuration) -> Any:
         """Return the grid as it stands, a nav_msgs/OccupancyGrid."""
         keyframes = mission.keyframes()
-        grid = occupancy_grid(keyframes, configuration.mapping, _mount(configuration))
+        grid = occupancy_grid(keyframes, configuration.mapping, configuration.sonar.mount_position)
         return self._grid_message(mission.newest_ns, grid)
 
     def _grid_message(self, stamp_ns: int, grid: OccupancyGrid) -> Any:
         return encoding.occupancy_grid(
             make, stamp_ns, grid.occupancy, grid.resolution, grid.origin, self._frame
         )
-
-
-def _mount(configuration: Configuration) -> Array:
-    return np.array([configuration.sonar.mount_x, configuration.sonar.mount_y])

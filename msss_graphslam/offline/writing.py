@@ -6,8 +6,6 @@ import shlex
 from collections import Counter
 from collections.abc import Sequence
 
-import numpy as np
-
 from msss_graphslam import __version__
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.mapping import map_points, occupancy_grid
@@ -49,8 +47,8 @@ def record_of(
     """
     with watch.stage("mapping"):
         points = map_points(result.keyframes)
-        mount = np.array([configuration.sonar.mount_x, configuration.sonar.mount_y])
-        grid = occupancy_grid(result.keyframes, configuration.mapping, mount)
+        position = configuration.sonar.mount_position
+        grid = occupancy_grid(result.keyframes, configuration.mapping, position)
     return RunRecord(
         estimate=result,
         points=points,

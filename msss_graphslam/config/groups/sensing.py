@@ -27,6 +27,11 @@ class Sonar:
         0.0, "rotation of sonar_link against base_link", unit="rad", minimum=-3.15, maximum=3.15
     )
 
+    @property
+    def mount_position(self) -> tuple[float, float]:
+        """Where ``sonar_link`` sits in ``base_link``, forward and to port [m]."""
+        return self.mount_x, self.mount_y
+
 
 @dataclass(frozen=True, slots=True)
 class Sensors:
