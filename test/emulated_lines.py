@@ -4,10 +4,11 @@
 
 import time
 
+from head_port import HeadPort
+
 from msss_graphslam.config.groups.micron import Micron
 from msss_graphslam.core.types import Beam
 from msss_graphslam.micron.head_driver import HeadDriver
-from msss_graphslam.micron.head_port import HeadPort
 from msss_graphslam.micron.settings import HeadSettings
 from msss_graphslam.micron.transports.link import Link
 from msss_graphslam.micron.transports.transport import Transport

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A line that comes and goes."""
 
+from head_port import HeadPort
 from micron.scripted_head import SECOND, START_NS, ScriptedHead
 
 from msss_graphslam.config.groups import Micron
 from msss_graphslam.micron.head_driver import HeadDriver
-from msss_graphslam.micron.head_port import HeadPort
 from msss_graphslam.micron.settings import HeadSettings
 from msss_graphslam.micron.transports.link import Link
 from msss_graphslam.micron.transports.transport import TransportEndedError, TransportError
