@@ -6,8 +6,8 @@ from argparse import ArgumentParser
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
+from benchmarks.bags import simulated_bag
 from benchmarks.bench_tables import growth_table, process_table, stage_table
 from benchmarks.cost import process_cost, scan_costs
 from benchmarks.missions import keep_silent
@@ -17,8 +17,7 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.offline.estimation import estimate
 from msss_graphslam.recordings.reader import open_recording
-from msss_graphslam.simulation.recording import simulate
-from msss_graphslam.simulation.worlds import World, world_named
+from msss_graphslam.simulation.worlds import world_named
 
 __all__ = ["main"]
 
@@ -58,12 +57,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _tables(folder: Path, console: Console) -> Iterator[Table]:
-    basin = _bag(world_named("paper"), folder, console)
+    basin = simulated_bag(world_named("paper"), SEED, folder, console)
     yield _processes(basin, folder, console)
     for recipe in ESTIMATORS.values():
         console.remark(f"{recipe.name} by stage")
         yield stage_table(estimate(open_recording(basin), recipe, Configuration(), keep_silent))
-    marina = _bag(replace(world_named("marina"), laps=1), folder, console)
+    marina = simulated_bag(replace(world_named("marina"), laps=1), SEED, folder, console)
     for recipe in ESTIMATORS.values():
         if recipe.closes_loops:
             console.remark(f"{recipe.name} scan by scan")
@@ -85,16 +84,6 @@ def _growth(bag: Path, estimator: str) -> Table:
         scan_costs(recording, estimator, start, MARINA_END) for start in (SHORT_PAST, 0.0)
     )
     return growth_table(estimator, few, many)
-
-
-def _bag(world: World, folder: Path, console: Console) -> Path:
-    """Return the world's bag in the folder; one that is there from an earlier call is kept."""
-    path = folder / f"{world.name}_{SEED}"
-    if not path.exists():
-        console.remark(f"simulating {world.name}")
-        with TemporaryDirectory(dir=folder) as unfinished:
-            simulate(world, SEED, Path(unfinished)).bag.rename(path)
-    return path
 
 
 if __name__ == "__main__":
