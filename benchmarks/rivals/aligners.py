@@ -95,14 +95,10 @@ class Gicp:
 
     def prepare(self, scan: Scan) -> tuple[Any, Any]:
         """Return the library's points and tree, not thinned."""
-        distances, _ = cKDTree(scan.points).query(scan.points, k=2)
-        layer = float(np.median(distances[:, 1]))
-        solid = np.vstack(
-            [
-                np.column_stack([scan.points, np.full(len(scan.points), z)])
-                for z in (-layer, 0.0, layer)
-            ]
-        )
+        distances, _ = cKDTree(scan.points).query(scan.points, k=[2])
+        layer = float(np.median(np.asarray(distances)))
+        heights = np.repeat([-layer, 0.0, layer], len(scan.points))
+        solid = np.column_stack([np.tile(scan.points, (3, 1)), heights])
         cloud = small_gicp.PointCloud(solid)
         tree = small_gicp.KdTree(cloud)
         small_gicp.estimate_normals_covariances(cloud, tree, num_neighbors=20)
