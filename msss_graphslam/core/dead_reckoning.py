@@ -7,10 +7,10 @@ from collections import Counter
 from copy import copy
 from typing import Self
 
-import numpy as np
-
 from msss_graphslam.config.groups import DeadReckoning as DeadReckoningConfig
-from msss_graphslam.core.compounding import wrap, wrap_angle
+from msss_graphslam.core.alignment import align
+from msss_graphslam.core.compounding import wrap_angle
+from msss_graphslam.core.innovation_gate import InnovationGate
 from msss_graphslam.core.kalman_filter import (
     ATTITUDE,
     COMPASS_BIAS,
@@ -19,6 +19,7 @@ from msss_graphslam.core.kalman_filter import (
     KalmanFilter,
     Z,
 )
+from msss_graphslam.core.reckoned_odometry import odometry_of, yaw_rate_variance
 from msss_graphslam.core.types import (
     Array,
     BodyVelocity,
@@ -30,8 +31,7 @@ from msss_graphslam.core.types import (
 
 __all__ = ["DeadReckoning"]
 
-TURN_S = 10.0
-"""A turn of the head, over which the published velocity's error is called slow [s]."""
+_AT_REST = [0.0, 0.0, 0.0]
 
 
 class DeadReckoning:
@@ -44,15 +44,15 @@ class DeadReckoning:
     def __init__(self, config: DeadReckoningConfig, refused: Counter[str]) -> None:
         self._config = config
         self._refused = refused
+        self._gate = InnovationGate(config, refused)
         self._pending: list[Measurement] = []
         self._filter: KalmanFilter | None = None
         self._stamp_ns = 0
-        self._rates: Array | None = None
+        self._rates: list[float] | None = None
         self._inertial_ns: int | None = None
         self._compass_ns: int | None = None
         self._unsensed = 0.0
         self._measured = False
-        self._refused_since: dict[str, int] = {}
 
     def process(self, measurement: Measurement) -> list[Odometry]:
         """Take in one measurement; return the odometry that it brings forth."""
@@ -67,9 +67,9 @@ class DeadReckoning:
         pending, self._pending = self._pending, []
         if not pending:
             return []
-        attitude, variance = _align(pending, self._config.compass_noise)
+        attitude, variance = align(pending, self._config)
         depth = next((entry.z for entry in pending if isinstance(entry, Depth)), 0.0)
-        self._filter = KalmanFilter(self._config, depth, attitude, variance)
+        self._filter = KalmanFilter(self._config, depth, attitude.tolist(), variance)
         self._stamp_ns = pending[0].stamp_ns
         self._measured = any(isinstance(entry, Inertial | BodyVelocity) for entry in pending)
         return [odometry for entry in pending for odometry in self._advance(self._filter, entry)]
@@ -80,15 +80,17 @@ class DeadReckoning:
         What happened since is bridged at the assumed speed; the compass is heard afresh.
         """
         config = self._config
-        ekf = KalmanFilter(config, float(pose[2]), pose[3:], config.compass_noise**2)
-        ekf.state[:2] = pose[:2]
-        ekf.covariance[COMPASS_BIAS, COMPASS_BIAS] = config.compass_drift**2
+        x, y, z, *attitude = pose.tolist()
+        ekf = KalmanFilter(config, z, attitude, config.compass_noise**2)
+        ekf.state[:2] = x, y
+        ekf.open(COMPASS_BIAS, config.compass_drift)
         self._filter, self._stamp_ns = ekf, stamp_ns
         self._unsensed = config.sensor_timeout
 
     def configure(self, config: DeadReckoningConfig) -> None:
         """Go on with other parameters; what has been estimated stays."""
         self._config = config
+        self._gate.configure(config)
         if self._filter is not None:
             self._filter.configure(config)
 
@@ -96,44 +98,53 @@ class DeadReckoning:
         """Return one that has taken in the same and goes its own way, counting elsewhere."""
         clone = copy(self)
         clone._refused = refused
+        clone._gate = self._gate.fork(refused)
         clone._pending = self._pending.copy()
-        clone._refused_since = self._refused_since.copy()
         clone._filter = self._filter.copy() if self._filter else None
         return clone
 
     def _advance(self, ekf: KalmanFilter, measurement: Measurement) -> list[Odometry]:
-        if measurement.stamp_ns < self._stamp_ns:
+        stamp_ns = measurement.stamp_ns
+        if stamp_ns < self._stamp_ns:
             self._refused["dead_reckoning_late"] += 1
             return []
-        of_motion = isinstance(measurement, Inertial | BodyVelocity)
-        self._measured |= of_motion
-        if of_motion or not self._has_inertial(measurement):
-            self._predict(ekf, measurement)
-        match measurement:
-            case Inertial():
-                self._inertial_ns = measurement.stamp_ns
-                self._update_orientation(ekf, measurement)
-                return [self._odometry(ekf)]
-            case Depth():
-                self._update_depth(ekf, measurement)
-            case BodyVelocity():
-                self._update_velocity(ekf, measurement)
-            case _ if not self._has_inertial(measurement):
-                return [self._odometry(ekf)]
-        return []
-
-    def _predict(self, ekf: KalmanFilter, measurement: Measurement) -> None:
-        interval = (measurement.stamp_ns - self._stamp_ns) * 1e-9
-        rates = self._rates if self._has_inertial(measurement) else None
-        self._stamp_ns, self._rates = measurement.stamp_ns, rates
+        has_inertial = self._recent(self._inertial_ns, stamp_ns)
         if isinstance(measurement, Inertial):
-            self._rates = measurement.angular_velocity
-            if rates is not None and self._rates is not None:
-                rates = 0.5 * (rates + self._rates)
-        if rates is None:
+            self._measured = True
+            self._predict(ekf, stamp_ns, has_inertial, measurement)
+            self._inertial_ns = stamp_ns
+            self._update_orientation(ekf, measurement)
+            return [self._odometry(ekf)]
+        if isinstance(measurement, BodyVelocity):
+            self._measured = True
+            self._predict(ekf, stamp_ns, has_inertial)
+            self._update_velocity(ekf, measurement)
+            return []
+        if not has_inertial:
+            self._predict(ekf, stamp_ns, has_inertial)
+        if isinstance(measurement, Depth):
+            self._update_depth(ekf, measurement)
+            return []
+        return [] if has_inertial else [self._odometry(ekf)]
+
+    def _predict(
+        self,
+        ekf: KalmanFilter,
+        stamp_ns: int,
+        has_inertial: bool,
+        inertial: Inertial | None = None,
+    ) -> None:
+        interval = (stamp_ns - self._stamp_ns) * 1e-9
+        before = self._rates if has_inertial else None
+        now = before if inertial is None else _rates_of(inertial)
+        self._stamp_ns, self._rates = stamp_ns, now
+        if before is None:
             self._unsensed += interval
-            ekf.predict(interval, np.zeros(3), self._config.turn_rate_noise, self._drift_noise)
+            ekf.predict(interval, _AT_REST, self._config.turn_rate_noise, self._drift_noise)
+        elif now is None:
+            ekf.predict(interval, before, self._config.gyro_noise)
         else:
+            rates = [0.5 * (a + b) for a, b in zip(before, now, strict=True)]
             ekf.predict(interval, rates, self._config.gyro_noise)
 
     @property
@@ -142,25 +153,26 @@ class DeadReckoning:
         # of motion has been heard of, nothing is known.
         return 0.0 if self._measured else self._config.drift_noise
 
-    def _has_inertial(self, now: Measurement) -> bool:
-        return self._recent(self._inertial_ns, now.stamp_ns)
-
     def _recent(self, last_ns: int | None, now_ns: int) -> bool:
-        timeout_ns = self._config.sensor_timeout * 1e9
-        return last_ns is not None and now_ns - last_ns <= timeout_ns
+        return last_ns is not None and now_ns - last_ns <= self._config.sensor_timeout * 1e9
 
     def _update_orientation(self, ekf: KalmanFilter, inertial: Inertial) -> None:
         if inertial.orientation is None:
             return
+        roll, pitch, yaw = inertial.orientation.tolist()
         variance = self._config.compass_noise**2
-        for offset, name in enumerate(("roll", "pitch")):
-            index = ATTITUDE.start + offset
-            difference = wrap_angle(float(inertial.orientation[offset] - ekf.state[index]))
-            if self._admits(ekf, name, index, difference, variance):
-                ekf.update(index, difference, variance)
-        difference = wrap_angle(float(inertial.orientation[2] - ekf.state[YAW]))
-        if self._admits(ekf, "yaw", YAW, difference, variance):
+        self._update_angle(ekf, "roll", ATTITUDE.start, roll, variance)
+        self._update_angle(ekf, "pitch", ATTITUDE.start + 1, pitch, variance)
+        difference = wrap_angle(yaw - ekf.state[YAW])
+        if self._gate.admits(ekf, "yaw", YAW, difference, variance, self._stamp_ns):
             ekf.update_heading(difference, variance, self._heading_gain(ekf, variance))
+
+    def _update_angle(
+        self, ekf: KalmanFilter, name: str, index: int, angle: float, variance: float
+    ) -> None:
+        difference = wrap_angle(angle - ekf.state[index])
+        if self._gate.admits(ekf, name, index, difference, variance, self._stamp_ns):
+            ekf.update(index, difference, variance)
 
     def _heading_gain(self, ekf: KalmanFilter, variance: float) -> float:
         # Deviation: with equation 10 the compass, whose bias wanders by degrees, would shake the
@@ -175,76 +187,29 @@ class DeadReckoning:
     def _update_velocity(self, ekf: KalmanFilter, measurement: BodyVelocity) -> None:
         # Deviation: the DVL corrects the velocity's error instead of being the control u_k, so
         # that a silent DVL leaves its last word behind, with growing uncertainty.
+        measured, variances = measurement.velocity.tolist(), measurement.covariance.diagonal()
         for offset, axis in enumerate("xyz"):
             index = VELOCITY_ERROR.start + offset
-            difference = float(measurement.velocity[offset] - ekf.velocity[offset])
-            variance = float(measurement.covariance[offset, offset])
-            if self._admits(ekf, f"dvl_{axis}", index, difference, variance):
+            difference, variance = (
+                measured[offset] - ekf.velocity[offset],
+                float(variances[offset]),
+            )
+            if self._gate.admits(ekf, f"dvl_{axis}", index, difference, variance, self._stamp_ns):
                 ekf.update(index, difference, variance)
 
     def _update_depth(self, ekf: KalmanFilter, depth: Depth) -> None:
-        difference = depth.z - float(ekf.state[Z])
+        difference = depth.z - ekf.state[Z]
         variance = self._config.depth_noise**2
-        if self._admits(ekf, "depth", Z, difference, variance):
+        if self._gate.admits(ekf, "depth", Z, difference, variance, self._stamp_ns):
             ekf.update(Z, difference, variance)
 
-    def _admits(
-        self, ekf: KalmanFilter, name: str, index: int, difference: float, variance: float
-    ) -> bool:
-        """Gate an innovation; a sensor that is refused for too long opens its state instead."""
-        gate = self._config.innovation_gate**2 * (ekf.spread(index) + variance)
-        if difference**2 > gate:
-            self._refused[f"{name}_innovation"] += 1
-            since = self._refused_since.setdefault(name, self._stamp_ns)
-            if self._stamp_ns - since < self._config.patience * 1e9:
-                return False
-            self._refused[f"{name}_reset"] += 1
-            ekf.open(index, difference)
-        self._refused_since.pop(name, None)
-        return True
-
     def _odometry(self, ekf: KalmanFilter) -> Odometry:
-        pose = ekf.state[:6].copy()
-        pose[3:] = wrap(pose[3:])
-        rates = np.zeros(3) if self._rates is None else self._rates.copy()
-        twist_covariance = np.zeros((6, 6))
-        twist_covariance[:3, :3] = ekf.covariance[VELOCITY_ERROR, VELOCITY_ERROR]
-        twist_covariance[[0, 1], [0, 1]] += self._drift_noise**2 / TURN_S
-        twist_covariance[5, 5] = self._yaw_rate_variance()
-        return Odometry(
-            stamp_ns=self._stamp_ns,
-            pose=pose,
-            covariance=ekf.covariance[:6, :6].copy(),
-            twist=np.concatenate([ekf.velocity, rates]),
-            twist_covariance=twist_covariance,
-        )
-
-    def _yaw_rate_variance(self) -> float:
-        config = self._config
-        if self._rates is not None:
-            return config.gyro_noise**2 / TURN_S + config.gyro_bias**2
-        turned = config.turn_rate_noise**2 / TURN_S
-        if not self._recent(self._compass_ns, self._stamp_ns):
-            return turned
-        drift = 2.0 * config.compass_drift**2 * TURN_S / config.compass_correlation_time
-        return min(turned, (2.0 * config.compass_noise**2 + drift) / TURN_S**2)
+        has_compass = self._recent(self._compass_ns, self._stamp_ns)
+        variance = yaw_rate_variance(self._config, self._rates is not None, has_compass)
+        rates = self._rates or _AT_REST
+        return odometry_of(ekf, self._stamp_ns, rates, variance, self._drift_noise)
 
 
-def _align(pending: list[Measurement], noise: float) -> tuple[Array, float]:
-    """Return the attitude (3,) at the first stamp and its variance from the samples so far."""
-    samples = [entry for entry in pending if isinstance(entry, Inertial)]
-    orientations = [entry.orientation for entry in samples if entry.orientation is not None]
-    if not orientations:
-        return np.zeros(3), 0.0
-    turned, estimates, previous = np.zeros(3), [], samples[0]
-    for sample in samples:
-        if previous.angular_velocity is not None:
-            turned = turned + previous.angular_velocity * (
-                (sample.stamp_ns - previous.stamp_ns) * 1e-9
-            )
-        if sample.orientation is not None:
-            estimates.append(sample.orientation - turned)
-        previous = sample
-    stacked = np.array(estimates)
-    mean = np.arctan2(np.sin(stacked).mean(axis=0), np.cos(stacked).mean(axis=0))
-    return mean, noise**2 / len(estimates)
+def _rates_of(inertial: Inertial) -> list[float] | None:
+    rates = inertial.angular_velocity
+    return None if rates is None else rates.tolist()

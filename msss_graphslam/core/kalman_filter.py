@@ -3,96 +3,110 @@
 """The extended Kalman filter's state, prediction and updates (Section IV-A)."""
 
 import math
+from collections.abc import Sequence
 from copy import copy
 from typing import Self
 
-import numpy as np
-
 from msss_graphslam.config.groups import DeadReckoning as DeadReckoningConfig
 from msss_graphslam.core.attitude import (
+    Vector,
     rate_derivatives,
     rate_matrix,
     rotation_derivatives,
     rotation_matrix,
+    times,
 )
+from msss_graphslam.core.paired_covariance import Derivatives, PairedCovariance
 from msss_graphslam.core.types import Array
 
-__all__ = ["ATTITUDE", "SIZE", "VELOCITY_ERROR", "YAW", "KalmanFilter", "Z", "transition"]
+__all__ = ["ATTITUDE", "VELOCITY_ERROR", "YAW", "KalmanFilter", "Z", "transition"]
 
-SIZE = 10
-POSITION, ATTITUDE, VELOCITY_ERROR = slice(0, 3), slice(3, 6), slice(6, 9)
-Z, YAW, COMPASS_BIAS = 2, 5, 9
-DIAGONAL = slice(None, None, SIZE + 1)
-"""The diagonal's places in a flat (10, 10) matrix."""
-IDENTITY = np.eye(SIZE)
-COMPASS = np.isin(np.arange(SIZE), (YAW, COMPASS_BIAS)).astype(float)
-"""What the compass shows of the state (10,): the yaw and its own bias."""
+ATTITUDE, VELOCITY_ERROR = slice(3, 6), slice(6, 9)
+X, Y, Z, YAW, COMPASS_BIAS = 0, 1, 2, 5, 9
 
 
 def transition(
-    state: Array, assumed_velocity: Array, rates: Array, interval: float, decay: float
-) -> tuple[Array, Array]:
-    """Return the predicted state (10,) and its Jacobian F (10, 10): equations 6 to 8.
+    state: Sequence[float],
+    assumed_speed: float,
+    rates: Sequence[float],
+    interval: float,
+    decays: tuple[float, float],
+) -> tuple[list[float], Derivatives]:
+    """Return the predicted state (10,) and the blocks of F: equations 6 to 8.
 
     The state is position [m] and attitude [rad] (the paper's X), then two slow errors: of the
-    body velocity (3) [m/s] and of the compass [rad]. ``rates`` (3,) [rad/s] are the body's,
-    ``interval`` [s], ``decay`` the Gauss-Markov factor of the velocity's error.
+    body velocity (3) [m/s] and of the compass [rad]. ``assumed_speed`` [m/s] is ahead, ``rates``
+    (3,) [rad/s] are the body's, ``interval`` [s], ``decays`` the Gauss-Markov factors of the two
+    errors.
     """
     # Deviation: the paper's control noise w_k is white. A speed that is wrong for minutes is not,
     # and white noise then makes the filter overconfident, so the slow errors are states.
-    angles = state[ATTITUDE]
-    velocity = assumed_velocity + state[VELOCITY_ERROR]
+    x, y, z, roll, pitch, yaw, surge, sway, heave, bias = state
+    velocity, angles = (assumed_speed + surge, sway, heave), (roll, pitch, yaw)
     to_world = rotation_matrix(angles)
-    travelled = interval * to_world
-    predicted = state.copy()
-    predicted[POSITION] += travelled @ velocity  # eq. 6
-    predicted[ATTITUDE] += interval * rate_matrix(angles) @ rates  # eq. 6
-    predicted[VELOCITY_ERROR] *= decay
-    jacobian = IDENTITY.copy()
-    jacobian[POSITION, ATTITUDE] = interval * rotation_derivatives(
-        to_world, float(angles[2]), velocity
+    east, north, up = times(to_world, velocity)
+    rolling, pitching, yawing = times(rate_matrix(angles), rates)
+    decay, compass_decay = decays
+    predicted = [
+        x + interval * east,  # eq. 6
+        y + interval * north,
+        z + interval * up,
+        roll + interval * rolling,
+        pitch + interval * pitching,
+        yaw + interval * yawing,
+        decay * surge,
+        decay * sway,
+        decay * heave,
+        bias,
+    ]
+    return predicted, Derivatives(
+        interval,
+        rotation_derivatives(to_world, yaw, velocity),
+        to_world,
+        rate_derivatives(angles, rates),
+        decay,
+        compass_decay,
     )
-    jacobian[POSITION, VELOCITY_ERROR] = travelled
-    jacobian[ATTITUDE, ATTITUDE] += interval * rate_derivatives(angles, rates)
-    jacobian[VELOCITY_ERROR, VELOCITY_ERROR] *= decay
-    return predicted, jacobian
 
 
 class KalmanFilter:
     """State (10,) and covariance (10, 10) of dead reckoning; see ``transition`` for the state."""
 
     def __init__(
-        self, config: DeadReckoningConfig, z: float, attitude: Array, variance: float
+        self, config: DeadReckoningConfig, z: float, attitude: Sequence[float], variance: float
     ) -> None:
         self._take_over(config)
-        self.state = np.zeros(SIZE)
-        self.state[Z] = z
-        self.state[ATTITUDE] = attitude
-        variances = np.zeros(SIZE)
-        variances[Z] = config.depth_noise**2
-        variances[ATTITUDE] = variance
-        variances[VELOCITY_ERROR] = self._stationary
-        self.covariance = np.diag(variances)
+        self.state = [0.0, 0.0, z, *map(float, attitude), 0.0, 0.0, 0.0, 0.0]
+        self._covariance = PairedCovariance()
+        variances = [config.depth_noise**2, variance, variance, variance, *self._stationary]
+        for index, known in enumerate(variances, start=Z):
+            self._covariance.widen(index, known)
 
     def configure(self, config: DeadReckoningConfig) -> None:
         """Go on with other parameters; the estimated velocity stays as it is."""
-        before = self._assumed_velocity
+        before = self._config.surge_speed
         self._take_over(config)
-        self.state[VELOCITY_ERROR] += before - self._assumed_velocity
+        self.state[VELOCITY_ERROR.start] += before - config.surge_speed
 
     def copy(self) -> Self:
         """Return a filter in the same state that goes its own way."""
         clone = copy(self)
-        clone.state, clone.covariance = self.state.copy(), self.covariance.copy()
+        clone.state, clone._covariance = self.state.copy(), self._covariance.copy()
         return clone
 
     @property
-    def velocity(self) -> Array:
+    def covariance(self) -> Array:
+        """The covariance (10, 10) of the state."""
+        return self._covariance.matrix
+
+    @property
+    def velocity(self) -> Vector:
         """The estimated body velocity (3,) [m/s]."""
-        return self._assumed_velocity + self.state[VELOCITY_ERROR]
+        surge, sway, heave = self.state[VELOCITY_ERROR]
+        return self._config.surge_speed + surge, sway, heave
 
     def predict(
-        self, interval: float, rates: Array, rate_noise: float, drift_noise: float = 0.0
+        self, interval: float, rates: Sequence[float], rate_noise: float, drift_noise: float = 0.0
     ) -> None:
         """Propagate over ``interval`` [s] with body ``rates`` (3,), equations 7 and 8.
 
@@ -103,60 +117,46 @@ class KalmanFilter:
             return
         config = self._config
         decay = math.exp(-interval / config.velocity_correlation_time)
-        self.state, jacobian = transition(
-            self.state, self._assumed_velocity, rates, interval, decay
-        )
-        # Deviation: depth is tied to heave alone and yaw to itself. Through a degree of roll or
-        # pitch that the AHRS has wrong, the full Jacobian lets the pressure sensor speak of the
-        # forward speed and the inclinometers of the heading, both wrongly.
-        jacobian[Z, 3:8] = 0.0
-        jacobian[:2, 8] = 0.0
-        jacobian[YAW, 3:5] = 0.0
         compass_decay = math.exp(-interval / config.compass_correlation_time)
-        jacobian[COMPASS_BIAS, COMPASS_BIAS] = compass_decay
-        noise = np.zeros(SIZE)
-        noise[:2] = drift_noise**2 * interval
-        noise[ATTITUDE] = rate_noise**2 * interval
-        noise[VELOCITY_ERROR] = self._stationary * (1.0 - decay**2)
-        noise[COMPASS_BIAS] = config.compass_drift**2 * (1.0 - compass_decay**2)
-        self.covariance = jacobian @ self.covariance @ jacobian.T  # eq. 8
-        self.covariance.reshape(-1)[DIAGONAL] += noise
+        self.state, derivatives = transition(
+            self.state, config.surge_speed, rates, interval, (decay, compass_decay)
+        )
+        drift, turn = drift_noise**2 * interval, rate_noise**2 * interval
+        renewed = 1.0 - decay**2
+        surge, sway, heave = self._stationary
+        compass = config.compass_drift**2 * (1.0 - compass_decay**2)
+        speeds = (surge * renewed, sway * renewed, heave * renewed)
+        noise = (drift, drift, 0.0, turn, turn, turn, *speeds, compass)
+        self._covariance.predict(derivatives, noise)  # eq. 8
 
     def update(self, index: int, difference: float, variance: float) -> None:
         """Take in measurement minus prediction of one state, equations 9 and 10."""
-        projected = self.covariance[:, index]
-        gain = projected / (projected[index] + variance)
-        self.state += gain * difference
-        self.covariance -= gain[:, None] * projected
+        moved, gains = self._covariance.condition(index, variance)
+        state = self.state
+        for at, gain in zip(moved, gains, strict=True):
+            state[at] += gain * difference
 
     def heading_gain(self, variance: float) -> float:
         """Return equation 10's gain of the yaw for a compass of this ``variance`` and its bias."""
-        together = float(self.covariance[YAW, YAW] + self.covariance[YAW, COMPASS_BIAS])
-        return together / (self.spread(YAW) + variance)
+        yaw, shared, _ = self._covariance.of_heading
+        return (yaw + shared) / (self.spread(YAW) + variance)
 
     def update_heading(self, difference: float, variance: float, gain: float) -> None:
         """Let the yaw alone follow the compass by ``gain``; the covariance knows of its bias."""
-        projected = gain * (self.covariance @ COMPASS)
         self.state[YAW] += gain * difference
-        self.covariance[YAW] -= projected
-        self.covariance[:, YAW] -= projected
-        self.covariance[YAW, YAW] += gain * float(COMPASS @ projected) + gain**2 * variance
+        self._covariance.follow_heading(gain, variance)
 
     def spread(self, index: int) -> float:
         """Return the variance with which a measurement of the state is predicted."""
-        variance = float(self.covariance[index, index])
-        if index == YAW:
-            bias = float(self.covariance[COMPASS_BIAS, COMPASS_BIAS])
-            variance += bias + 2.0 * float(self.covariance[YAW, COMPASS_BIAS])
-        return variance
+        if index != YAW:
+            return self._covariance.variance(index)
+        yaw, shared, bias = self._covariance.of_heading
+        return yaw + bias + 2.0 * shared
 
     def open(self, index: int, difference: float) -> None:
         """Admit that one state may be wrong by ``difference``."""
-        self.covariance[index, index] += difference**2
+        self._covariance.widen(index, difference**2)
 
     def _take_over(self, config: DeadReckoningConfig) -> None:
         self._config = config
-        self._assumed_velocity = np.array([config.surge_speed, 0.0, 0.0])
-        self._stationary = (
-            np.array([config.surge_noise, config.sway_noise, config.heave_noise]) ** 2
-        )
+        self._stationary = (config.surge_noise**2, config.sway_noise**2, config.heave_noise**2)

@@ -29,6 +29,7 @@ class Sequencer:
         self._count = 0
         self._first_ns: int | None = None
         self._heard: dict[str, int] = {}
+        self._newest_ns = _LONG_AGO
         self._often: Counter[str] = Counter()
         self._released_ns = _LONG_AGO
 
@@ -41,9 +42,13 @@ class Sequencer:
         heapq.heappush(self._heap, (stamp_ns, kind, self._count, measurement))
         self._count += 1
         self._often[kind] += 1
-        self._heard[kind] = max(self._heard.get(kind, _LONG_AGO), stamp_ns)
-        self._first_ns = stamp_ns if self._first_ns is None else self._first_ns
-        return self._release(self._settled_ns())
+        if stamp_ns > self._heard.get(kind, _LONG_AGO):
+            self._heard[kind] = stamp_ns
+        if stamp_ns > self._newest_ns:
+            self._newest_ns = stamp_ns
+        if self._first_ns is None:
+            self._first_ns = stamp_ns
+        return self._release(self._settled_ns(self._first_ns))
 
     def admits(self, measurement: Measurement) -> bool:
         """Whether the measurement can still find its place."""
@@ -60,18 +65,23 @@ class Sequencer:
 
     def flush(self) -> list[Measurement]:
         """Return all that is still held."""
-        return self._release(max(self._heard.values(), default=_LONG_AGO))
+        return self._release(self._newest_ns)
 
-    def _settled_ns(self) -> int:
-        newest = max(self._heard.values())
-        if self._first_ns is None or newest - self._first_ns < self._patience_ns:
+    def _settled_ns(self, first_ns: int) -> int:
+        newest = self._newest_ns
+        if newest - first_ns < self._patience_ns:
             return _LONG_AGO
-        speaking = [at for at in self._heard.values() if newest - at <= self._patience_ns]
-        return min(newest - self._window_ns, *speaking)
+        settled, silent = newest - self._window_ns, newest - self._patience_ns
+        for heard in self._heard.values():
+            if silent <= heard < settled:
+                settled = heard
+        return settled
 
     def _release(self, until_ns: int) -> list[Measurement]:
         released = []
-        while self._heap and self._heap[0][0] <= until_ns:
-            released.append(heapq.heappop(self._heap)[3])
-        self._released_ns = max(self._released_ns, until_ns)
+        heap = self._heap
+        while heap and heap[0][0] <= until_ns:
+            released.append(heapq.heappop(heap)[3])
+        if until_ns > self._released_ns:
+            self._released_ns = until_ns
         return released

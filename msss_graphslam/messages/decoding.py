@@ -23,11 +23,14 @@ __all__ = [
     "RawBytes",
     "TruePose",
     "beam",
+    "bins",
     "body_velocity",
     "depth",
+    "depth_from",
     "inertial",
     "placement",
     "raw_bytes",
+    "sample",
     "true_pose",
 ]
 
@@ -54,7 +57,7 @@ def beam(message: Any) -> Beam:
         raise Refusal("beam_bearing_not_finite")
     if bearing != float(message.angle_max):
         raise Refusal("beam_with_several_bearings")
-    ranges = _bins(numbers(message.ranges).tobytes())
+    ranges = bins(numbers(message.ranges).tobytes())
     intensities = numbers(message.intensities)
     _check_profile(ranges, intensities)
     return Beam(stamp_ns, bearing, ranges, intensities)
@@ -68,6 +71,11 @@ def inertial(message: Any) -> Inertial:
         orientation = angles_of(message.orientation, "imu")
     if _given(message.angular_velocity_covariance):
         rates = vector_of(message.angular_velocity, "imu_not_finite")
+    return sample(stamp_ns, orientation, rates)
+
+
+def sample(stamp_ns: int, orientation: Array | None, rates: Array | None) -> Inertial:
+    """Return the sample of an IMU, unless it says nothing."""
     if orientation is None and rates is None:
         raise Refusal("imu_without_data")
     return Inertial(stamp_ns, orientation, rates)
@@ -75,8 +83,11 @@ def inertial(message: Any) -> Inertial:
 
 def depth(message: Any, sensors: Sensors) -> Depth:
     """Return the depth of a sensor_msgs/FluidPressure."""
-    stamp_ns = stamp_of(message, "pressure")
-    pressure = float(message.fluid_pressure)
+    return depth_from(stamp_of(message, "pressure"), float(message.fluid_pressure), sensors)
+
+
+def depth_from(stamp_ns: int, pressure: float, sensors: Sensors) -> Depth:
+    """Return the depth at which the sensor reads ``pressure`` [Pa]."""
     if not isfinite(pressure):
         raise Refusal("pressure_not_finite")
     lowest = _LOWEST_GAUGE if sensors.gauge_pressure else _LOWEST_ABSOLUTE
@@ -113,8 +124,8 @@ def placement(message: Any) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _bins(data: bytes) -> Array:
-    """Return the bins' centres; consecutive beams share one array, which is checked once."""
+def bins(data: bytes) -> Array:
+    """Return the bins' centres (64-bit); beams share one array, which is checked once."""
     ranges = np.frombuffer(data)
     if ranges.size == 0:
         raise Refusal("beam_without_bins")

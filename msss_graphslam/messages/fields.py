@@ -10,7 +10,20 @@ import numpy as np
 from msss_graphslam.core.types import Array
 from msss_graphslam.messages.refusal import Refusal
 
-__all__ = ["angles_of", "numbers", "pose_of", "stamp_of", "time_of", "vector_of"]
+__all__ = [
+    "Vector",
+    "angles_from",
+    "angles_of",
+    "numbers",
+    "pose_from",
+    "pose_of",
+    "stamp_of",
+    "time_of",
+    "vector_from",
+    "vector_of",
+]
+
+Vector = tuple[float, float, float]
 
 _NANOSECONDS = 1_000_000_000
 _SHORTEST_QUATERNION = 1e-3
@@ -33,33 +46,55 @@ def time_of(header: Any, name: str) -> int:
 
 def pose_of(position: Any, orientation: Any, name: str) -> Array:
     """Return x, y, z, roll, pitch, yaw (6,) [m, rad]; ``name`` is for the refusal."""
-    place = vector_of(position, f"{name}_not_finite")
-    return np.concatenate([place, angles_of(orientation, name)])
+    place = _components(position)
+    return pose_from(place, _components(orientation), float(orientation.w), name)
 
 
 def angles_of(quaternion: Any, name: str) -> Array:
     """Return roll, pitch, yaw (3,) [rad] of a quaternion of any length."""
-    values = float(quaternion.x), float(quaternion.y), float(quaternion.z), float(quaternion.w)
-    length = hypot(*values)
-    if not isfinite(length):
-        raise Refusal(f"{name}_not_finite")
-    if length < _SHORTEST_QUATERNION:
-        raise Refusal(f"{name}_quaternion_zero")
-    x, y, z, w = (value / length for value in values)
-    sine = 2.0 * (w * y - z * x)
-    if abs(sine) > _VERTICAL:
-        return np.array([0.0, copysign(pi / 2.0, sine), remainder(2.0 * atan2(z, w), 2.0 * pi)])
-    roll = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    yaw = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return np.array([roll, asin(sine), yaw])
+    return np.array(angles_from(*_components(quaternion), float(quaternion.w), name))
 
 
 def vector_of(values: Any, reason: str) -> Array:
     """Return x, y, z (3,); ``reason`` is the refusal of what is not finite."""
-    components = float(values.x), float(values.y), float(values.z)
-    if not all(map(isfinite, components)):
+    return vector_from(*_components(values), reason)
+
+
+def pose_from(place: Vector, axis: Vector, w: float, name: str) -> Array:
+    """Return x, y, z, roll, pitch, yaw (6,) of a place [m] and a quaternion (*axis, w)."""
+    _check_finite(*place, f"{name}_not_finite")
+    return np.array(place + angles_from(*axis, w, name))
+
+
+def vector_from(x: float, y: float, z: float, reason: str) -> Array:
+    """Return x, y, z (3,); ``reason`` is the refusal of what is not finite."""
+    _check_finite(x, y, z, reason)
+    return np.array((x, y, z))
+
+
+def angles_from(x: float, y: float, z: float, w: float, name: str) -> Vector:
+    """Return roll, pitch, yaw [rad] of a quaternion of any length."""
+    length = hypot(x, y, z, w)
+    if not isfinite(length):
+        raise Refusal(f"{name}_not_finite")
+    if length < _SHORTEST_QUATERNION:
+        raise Refusal(f"{name}_quaternion_zero")
+    x, y, z, w = x / length, y / length, z / length, w / length
+    sine = 2.0 * (w * y - z * x)
+    if abs(sine) > _VERTICAL:
+        return 0.0, copysign(pi / 2.0, sine), remainder(2.0 * atan2(z, w), 2.0 * pi)
+    roll = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    yaw = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return roll, asin(sine), yaw
+
+
+def _components(values: Any) -> Vector:
+    return float(values.x), float(values.y), float(values.z)
+
+
+def _check_finite(x: float, y: float, z: float, reason: str) -> None:
+    if not (isfinite(x) and isfinite(y) and isfinite(z)):
         raise Refusal(reason)
-    return np.array(components)
 
 
 def numbers(values: Any) -> Array:

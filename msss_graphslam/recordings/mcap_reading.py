@@ -29,6 +29,7 @@ from msss_graphslam.recordings.mcap_records import (
 __all__ = ["McapContent", "RawMessage", "merge"]
 
 _MESSAGE_HEAD = Struct("<HIQQ")
+_MESSAGE = int(Opcode.MESSAGE)
 _log_time = attrgetter("log_ns")
 
 
@@ -93,18 +94,18 @@ class McapContent:
     ) -> list[RawMessage]:
         """Return the messages of one block in these channels, by id."""
         data = load(stream, block.record)
+        heads = {
+            number: (channel, self.schemas.get(channel.schema_id))
+            for number, channel in channels.items()
+        }
         found = []
-        for record in inner_records(block.record, data):
-            if record.opcode != Opcode.MESSAGE:
+        for opcode, start, end in inner_records(block.record, data):
+            if opcode != _MESSAGE:
                 continue
-            channel_id, sequence, log_ns, publish_ns = _MESSAGE_HEAD.unpack_from(
-                data, record.start
-            )
-            channel = channels.get(channel_id)
-            if channel is not None:
-                body = data[record.start + _MESSAGE_HEAD.size : record.end]
-                schema = self.schemas.get(channel.schema_id)
-                found.append(RawMessage(channel, schema, log_ns, publish_ns, sequence, body))
+            number, sequence, log_ns, publish_ns = _MESSAGE_HEAD.unpack_from(data, start)
+            if number in heads:
+                body = data[start + _MESSAGE_HEAD.size : end]
+                found.append(RawMessage(*heads[number], log_ns, publish_ns, sequence, body))
         return found
 
     def _take(self, record: Record, data: bytes) -> None:
@@ -121,13 +122,13 @@ class McapContent:
     def _take_block(self, outer: Record, data: bytes) -> None:
         counts: Counter[int] = Counter()
         times: list[int] = []
-        for record in inner_records(outer, data):
-            if record.opcode == Opcode.MESSAGE:
-                channel_id, _, log_ns, _ = _MESSAGE_HEAD.unpack_from(data, record.start)
+        for opcode, start, end in inner_records(outer, data):
+            if opcode == _MESSAGE:
+                channel_id, _, log_ns, _ = _MESSAGE_HEAD.unpack_from(data, start)
                 counts[channel_id] += 1
                 times.append(log_ns)
             else:
-                self._define(record.opcode, data[record.start : record.end])
+                self._define(opcode, data[start:end])
         if times:
             self.counts.update(counts)
             self.blocks.append(_Block(outer, min(times), max(times), frozenset(counts)))

@@ -108,22 +108,22 @@ def load(stream: BinaryIO, record: Record) -> bytes:
     return unpacked.read(length)
 
 
-def inner_records(record: Record, data: bytes) -> Iterator[Record]:
-    """Yield the records that a record's data holds: a chunk's, or itself.
+def inner_records(record: Record, data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Yield opcode, start and end of the records that a record's data holds: a chunk's, or itself.
 
     Raises ValueError where they do not fit into the data.
     """
     if record.opcode != Opcode.CHUNK:
-        yield Record(record.opcode, 0, len(data))
+        yield record.opcode, 0, len(data)
         return
-    position = 0
-    while position < len(data):
+    position, size = 0, len(data)
+    while position < size:
         opcode, length = _PREFIX.unpack_from(data, position)
         start = position + _PREFIX.size
         position = start + length
-        if position > len(data):
+        if position > size:
             raise ValueError("a record is longer than its chunk")
-        yield Record(opcode, start, position)
+        yield opcode, start, position
 
 
 def _record_at(stream: BinaryIO, position: int, size: int) -> Record | None:

@@ -12,17 +12,18 @@ import numpy as np
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.types import Beam, Measurement, Trajectory
 from msss_graphslam.errors import UserError
-from msss_graphslam.messages import decoding, topics
+from msss_graphslam.messages import topics
 from msss_graphslam.messages.topics import Topic
 from msss_graphslam.recordings.damage import Damage
 from msss_graphslam.recordings.files import mcap_files
 from msss_graphslam.recordings.mcap_reading import McapContent, RawMessage, merge
 from msss_graphslam.recordings.mounting import Mounting
-from msss_graphslam.recordings.raw_sonar import RawSonar
-from msss_graphslam.recordings.source import AnySource, Given, Source
+from msss_graphslam.recordings.sensors import sensor_sources, sonar_source, truth_source
+from msss_graphslam.recordings.source import AnySource, Given
 from msss_graphslam.recordings.typestore import UndecodableError, decode
 
 _LOG_DELAY_NS = 2_000_000_000
+_SETTLING_NS = 60_000_000_000
 
 __all__ = ["RecordedTopic", "Recording", "open_recording"]
 
@@ -107,19 +108,13 @@ class Recording:
         What cannot be used is counted in ``refusals`` by reason. Raises UserError without a sonar.
         """
         self._require_sonar()
-        sensors = configuration.sensors
-        sources: list[AnySource[Measurement]] = [
-            self._sonar(configuration),
-            Source(topics.IMU, decoding.inertial),
-            Source(topics.PRESSURE, lambda message: decoding.depth(message, sensors)),
-            Source(topics.DVL, decoding.body_velocity),
-        ]
+        sources = [sonar_source(self.sonar_topic, configuration), *sensor_sources(configuration)]
         return self._records(sources, refusals)
 
     def ground_truth(self, refusals: Counter[str] | None = None) -> Trajectory | None:
         """Return the true trajectory for evaluation, or None where there is none."""
-        source = Source(topics.GROUND_TRUTH, decoding.true_pose)
-        poses = list(self._records([source], Counter() if refusals is None else refusals))
+        refusals = Counter() if refusals is None else refusals
+        poses = list(self._records([truth_source()], refusals))
         if not poses:
             return None
         stamps = np.array([pose.stamp_ns for pose in poses], dtype=np.int64)
@@ -130,11 +125,11 @@ class Recording:
     ) -> Iterator[Beam]:
         """Yield the beams logged between two times or shortly after, without counting refusals.
 
-        Raw bytes are read from the beginning: how long a reply took is known from those before it.
+        Raw bytes are read from a minute before: how long replies take is known from others.
         """
-        source = self._sonar(configuration or Configuration())
+        source = sonar_source(self.sonar_topic, configuration or Configuration())
         recorded = self.find(source.topic)
-        first_ns = self.start_ns if source.topic == topics.SONAR_RAW else start_ns
+        first_ns = start_ns - (_SETTLING_NS if source.topic == topics.SONAR_RAW else 0)
         span_ns = range(first_ns, end_ns + _LOG_DELAY_NS + 1)
         for raw in self.messages([recorded.name] if recorded else [], span_ns):
             yield from source.records_of(raw, Counter())
@@ -164,11 +159,6 @@ class Recording:
         """Where the beams are: in pings, or only in the bytes of the head's port."""
         has_raw_only = not self.find(topics.SONAR_PING) and self.find(topics.SONAR_RAW)
         return topics.SONAR_RAW if has_raw_only else topics.SONAR_PING
-
-    def _sonar(self, configuration: Configuration) -> AnySource[Beam]:
-        if self.sonar_topic == topics.SONAR_RAW:
-            return RawSonar(configuration.micron)
-        return Source(topics.SONAR_PING, decoding.beam)
 
     def _records(
         self, sources: Sequence[AnySource[Given]], refusals: Counter[str]

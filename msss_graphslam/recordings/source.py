@@ -10,6 +10,7 @@ from typing import Any, Generic, Protocol, TypeVar
 from msss_graphslam.messages import Refusal
 from msss_graphslam.messages.order import StampOrder
 from msss_graphslam.messages.topics import Topic
+from msss_graphslam.recordings.direct import DirectReading
 from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.typestore import UndecodableError, decode
 
@@ -39,21 +40,34 @@ class AnySource(Protocol[Given]):
 
 @dataclass(slots=True)
 class Source(Generic[Record]):
-    """Turns the raw messages of a topic into records with increasing stamps."""
+    """Turns the raw messages of a topic into records with increasing stamps.
+
+    What ``direct`` does not read, ``decode`` makes of the whole message.
+    """
 
     topic: Topic
     decode: Callable[[Any], Record]
+    direct: DirectReading[Record] | None = None
     _order: StampOrder = field(default_factory=StampOrder)
 
-    def records_of(self, raw: RawMessage, refusals: Counter[str]) -> list[Record]:
+    def records_of(self, raw: RawMessage, refusals: Counter[str]) -> Sequence[Record]:
         """Return the record, or none where the message is refused and counted."""
         try:
-            record = self.decode(message_of(raw, self.topic))
+            record = self._read(raw)
             self._order.check(record.stamp_ns)
         except Refusal as refusal:
             refusals[refusal.reason] += 1
-            return []
-        return [record]
+            return ()
+        return (record,)
+
+    def _read(self, raw: RawMessage) -> Record:
+        if self.direct is None:
+            return self.decode(message_of(raw, self.topic))
+        record = self.direct.read(raw.data)
+        if record is None:
+            record = self.decode(message_of(raw, self.topic))
+            self.direct.learn(raw.data)
+        return record
 
 
 def message_of(raw: RawMessage, topic: Topic) -> Any:

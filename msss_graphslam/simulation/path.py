@@ -5,7 +5,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from msss_graphslam.core.types import Array
 
@@ -29,6 +28,9 @@ class Path:
     @classmethod
     def through(cls, waypoints: Array) -> "Path":
         """Return the closed path through the ``waypoints`` (k, 2) [m], a periodic cubic spline."""
+        # The other commands of ``msss`` are spared the time that it takes.
+        from scipy.interpolate import CubicSpline
+
         closed = np.vstack([waypoints, waypoints[:1]])
         chords = np.linalg.norm(np.diff(closed, axis=0), axis=1)
         knots = np.concatenate([[0.0], np.cumsum(chords)])

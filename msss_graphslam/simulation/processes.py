@@ -5,7 +5,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from msss_graphslam.core.types import Array
 
@@ -28,6 +27,9 @@ class GaussMarkov:
         self, generator: np.random.Generator, count: int, period: float, *, from_zero: bool = False
     ) -> Array:
         """Return ``count`` samples, ``period`` [s] apart; stationary, or begun at 0."""
+        # The other commands of ``msss`` are spared the time that it takes.
+        from scipy.signal import lfilter
+
         gain = np.sqrt(1.0 + self.lag / self.correlation_time)
         decay = np.exp(-period / self.correlation_time)
         driving = gain * self.deviation * generator.standard_normal(count)

@@ -14,6 +14,7 @@ from msss_graphslam.core.attitude import (
     rate_matrix,
     rotation_derivatives,
     rotation_matrix,
+    times,
 )
 from msss_graphslam.core.types import Array
 
@@ -53,6 +54,13 @@ def test_both_blocks_are_those_of_equation_6(angles: Array) -> None:
     np.testing.assert_allclose(rate_matrix(angles), whole[3:, 3:], atol=1e-13)
 
 
+@given(st.tuples(vectors, vectors, vectors), vectors)
+def test_times_is_the_matrix_product(rows: tuple[Array, Array, Array], vector: Array) -> None:
+    matrix = np.array(rows)
+    a, b, c = (tuple(row) for row in matrix.tolist())
+    np.testing.assert_allclose(times((a, b, c), vector), matrix @ vector, atol=1e-12)
+
+
 @given(attitudes)
 def test_rotation_turns_about_z_then_y_then_x(angles: Array) -> None:
     expected = Rotation.from_euler("ZYX", angles[::-1]).as_matrix()
@@ -63,23 +71,23 @@ def test_rotation_turns_about_z_then_y_then_x(angles: Array) -> None:
 def test_rate_matrix_belongs_to_the_rotation(angles: Array, rates: Array) -> None:
     """The rotation's change is the rotation times the cross product with the body's rates."""
     step = 1e-6
-    later = rotation_matrix(angles + step * rate_matrix(angles) @ rates)
-    earlier = rotation_matrix(angles - step * rate_matrix(angles) @ rates)
-    turning = rotation_matrix(angles).T @ (later - earlier) / (2.0 * step)
+    change = step * np.array(times(rate_matrix(angles), rates))
+    later, earlier = (np.array(rotation_matrix(angles + sign * change)) for sign in (1.0, -1.0))
+    turning = np.array(rotation_matrix(angles)).T @ (later - earlier) / (2.0 * step)
     cross = [turning[2, 1], turning[0, 2], turning[1, 0]]
     np.testing.assert_allclose(cross, rates, atol=1e-6)
 
 
 @given(attitudes, vectors)
 def test_rotation_derivatives(angles: Array, vector: Array) -> None:
-    expected = jacobian(lambda a: rotation_matrix(a) @ vector, angles)
-    derivatives = rotation_derivatives(rotation_matrix(angles), float(angles[2]), vector)
+    expected = jacobian(lambda a: np.array(times(rotation_matrix(a), vector)), angles)
+    derivatives = rotation_derivatives(rotation_matrix(angles), float(angles[2]), tuple(vector))
     np.testing.assert_allclose(derivatives, expected, atol=1e-7)
 
 
 @given(attitudes, vectors)
 def test_rate_derivatives(angles: Array, rates: Array) -> None:
-    expected = jacobian(lambda a: rate_matrix(a) @ rates, angles)
+    expected = jacobian(lambda a: np.array(times(rate_matrix(a), rates)), angles)
     np.testing.assert_allclose(rate_derivatives(angles, rates), expected, rtol=1e-6, atol=1e-6)
 
 
@@ -88,8 +96,9 @@ def test_levelled_points_keep_the_yaw_and_lose_the_tilt() -> None:
     angles, points = rng.uniform(-1.0, 1.0, (20, 3)), rng.normal(size=(20, 3))
     levelled = level(angles[:, 0], angles[:, 1], points)
     for attitude, point, result in zip(angles, points, levelled, strict=True):
-        yaw_alone = rotation_matrix(np.array([0.0, 0.0, attitude[2]]))
-        np.testing.assert_allclose(yaw_alone @ result, rotation_matrix(attitude) @ point)
+        yaw_alone = rotation_matrix((0.0, 0.0, attitude[2]))
+        expected = times(rotation_matrix(attitude), point)
+        np.testing.assert_allclose(times(yaw_alone, result), expected)
 
 
 def test_a_level_vehicle_leaves_points_as_they_are() -> None:

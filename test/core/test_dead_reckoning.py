@@ -183,17 +183,30 @@ def test_a_drifting_compass_does_not_shake_the_heading_within_a_turn() -> None:
     assert yaws[-1] == pytest.approx(0.08 * (1.0 - np.exp(-1.0)), rel=0.05)
 
 
-def test_alignment_averages_the_first_second_and_knows_how_well() -> None:
+def launched(rng: np.random.Generator) -> Run:
+    """A mission of which the compass' bias, 0 at launch, walks away from the yaw pi."""
+    walk = CONFIG.compass_drift * np.sqrt(2.0 * PERIOD / CONFIG.compass_correlation_time)
+    bias = np.append(0.0, np.cumsum(walk * rng.normal(size=25)))
+    yaws = np.pi + bias + CONFIG.compass_noise * rng.normal(size=26)
+    return Run().feed([imu(PERIOD * number, yaw) for number, yaw in enumerate(yaws)])
+
+
+def test_alignment_knows_how_well_it_knows_the_heading() -> None:
     rng = np.random.default_rng(0)
-    noise = CONFIG.compass_noise
-    first = []
-    for _ in range(200):
-        yaws = np.pi + noise * rng.normal(size=26)
-        run = Run().feed([imu(PERIOD * number, yaw) for number, yaw in enumerate(yaws)])
-        first.append(float(wrap(run.odometry[0].pose[5] - np.pi)))
-    assert run.odometry[0].covariance[5, 5] == pytest.approx(noise**2 / 26.0)
-    assert np.std(first) == pytest.approx(noise / np.sqrt(26.0), rel=0.15)
-    assert np.mean(first) == pytest.approx(0.0, abs=3.0 * noise / np.sqrt(26.0 * 200.0))
+    runs = [launched(rng) for _ in range(300)]
+    errors = np.array([float(wrap(run.odometry[0].pose[5] - np.pi)) for run in runs])
+    deviation = np.sqrt(runs[0].odometry[0].covariance[5, 5])
+    assert np.std(errors) == pytest.approx(deviation, rel=0.15)
+    assert np.mean(errors) == pytest.approx(0.0, abs=3.0 * deviation / np.sqrt(300.0))
+
+
+def test_alignment_trusts_the_compass_the_less_the_longer_it_has_drifted() -> None:
+    early, late = (
+        Run().feed([imu(PERIOD * number, 0.1 * (number == odd)) for number in range(26)])
+        for odd in (2, 24)
+    )
+    first, last = (run.odometry[0].pose[5] for run in (early, late))
+    assert first > 0.1 / 26.0 > 0.1 / 100.0 > last > 0.0
 
 
 def test_alignment_takes_the_turning_out() -> None:
