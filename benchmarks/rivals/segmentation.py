@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.tables import Table
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.beam_segmentation import BeamSegmenter
+from msss_graphslam.core.scan_generator import BLOCK
 from msss_graphslam.core.types import Array, Beam, Scan, Trajectory
 from msss_graphslam.evaluation.errors import interpolate
 from msss_graphslam.recordings.reader import Recording
@@ -80,8 +81,8 @@ def _ours(
 ) -> Detection:
     segmenter = BeamSegmenter(configuration.sonar, configuration.segmentation)
     clock = time.process_time()
-    for beam in beams:
-        segmenter.segment(beam)
+    for first in range(0, len(beams), BLOCK):
+        segmenter.segment_all(beams[first : first + BLOCK])
     seconds = (time.process_time() - clock) / len(beams)
     numbers, ranges, first = [], [], 0
     for scan in scans:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Beam segmentation by a dynamic threshold (Section III-C): an echo profile becomes ranges."""
 
-import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from msss_graphslam.core.echo_extraction import (
     FULL_SCALE,
     Echoes,
     find_echoes,
+    smooth,
     smoothing_kernel,
     to_decibels,
 )
@@ -41,15 +42,37 @@ class BeamSegmenter:
 
         It is ``empty`` when the head heard nothing: fewer than two bins, or no code but 0.
         """
-        if not _is_audible(beam) or not self._takes(beam.ranges):
-            return _empty(beam)
-        levels = to_decibels(beam.intensities, self._scale)
-        levels = np.convolve(levels, self._kernel, "same") / self._coverage
+        return self.segment_all([beam])[0]
+
+    def segment_all(self, beams: Sequence[Beam]) -> list[Reading]:
+        """Return the readings of the ``beams``: the same as of one by one, in half the time."""
+        return [reading for alike in _runs(beams) for reading in self._segment_alike(alike)]
+
+    def _segment_alike(self, beams: Sequence[Beam]) -> list[Reading]:
+        """Return the readings of beams of the same bins."""
+        codes = np.array([beam.intensities for beam in beams], dtype=float)
+        bearings = np.array([beam.bearing for beam in beams])
+        audible = (codes > 0.0).any(axis=1) & np.isfinite(bearings)
+        ranges = beams[0].ranges
+        if ranges.shape != codes.shape[1:] or not audible.any() or not self._takes(ranges):
+            return [_empty(beam) for beam in beams]
+        if audible.all():
+            return self._read(beams, codes, bearings)
+        flags = audible.tolist()
+        heard = [beam for beam, is_audible in zip(beams, flags, strict=True) if is_audible]
+        read = iter(self._read(heard, codes[audible], bearings[audible]))
+        return [
+            next(read) if is_audible else _empty(beam)
+            for beam, is_audible in zip(beams, flags, strict=True)
+        ]
+
+    def _read(self, beams: Sequence[Beam], codes: Array, bearings: Array) -> list[Reading]:
+        """Return the readings of beams with echoes, learning from them; ``codes`` are (b, n)."""
         config = self._config
-        echoes = find_echoes(
-            levels, self._thresholds(levels, beam.bearing), config.echo_drop, config.dynamic_range
-        )
-        return self._reading(beam, echoes.first(config.candidates))
+        levels = smooth(to_decibels(codes, self._scale), self._kernel) / self._coverage
+        thresholds = self._thresholds(levels, bearings)
+        echoes = find_echoes(levels, thresholds, config.echo_drop, config.dynamic_range)
+        return self._readings(beams, codes, echoes.first(config.candidates))
 
     def _takes(self, ranges: Array) -> bool:
         """Whether the bins can be read; new ones, if they can, start the learning anew."""
@@ -69,32 +92,42 @@ class BeamSegmenter:
         self._bin_size = float(np.median(np.diff(ranges)))
         self._smallest_variance = self._bin_size**2 / 12.0 + self._config.surface_roughness**2
         self._kernel = smoothing_kernel(self._config.echo_length, self._bin_size, ranges.size)
-        self._coverage = np.convolve(np.ones(ranges.size), self._kernel, "same")
+        self._coverage = smooth(np.ones((1, ranges.size)), self._kernel)
         self._floor = NoiseFloor(ranges.size)
         self._ringing = Ringing(ranges, self._config)
 
-    def _thresholds(self, levels: Array, bearing: float) -> Array:
+    def _thresholds(self, levels: Array, bearings: Array) -> Array:
         thresholds = self._floor.update(levels) + self._config.echo_contrast
-        ringing = self._ringing.update(levels, bearing)
-        near = thresholds[: ringing.size]
+        ringing = self._ringing.update(levels, bearings)
+        near = thresholds[:, : ringing.shape[1]]
         np.maximum(near, ringing, out=near)
         return thresholds
 
-    def _reading(self, beam: Beam, echoes: Echoes) -> Reading:
+    def _readings(self, beams: Sequence[Beam], codes: Array, echoes: Echoes) -> list[Reading]:
         """Place an echo midway between its edges, where the beam's axis meets the surface."""
         # The leading edge alone comes early: by half the pulse, and where the incidence is
         # oblique by half the spread of the beam's footprint, which bends walls inwards.
         middle = 0.5 * (echoes.leading + echoes.trailing)
-        codes = beam.intensities[echoes.peaks]
-        return Reading(
-            stamp_ns=beam.stamp_ns,
-            bearing=beam.bearing,
-            ranges=np.interp(middle, self._bins, self._ranges),
-            variances=self._variances(echoes),
-            levels=echoes.levels,
-            maximum_range=float(self._ranges[-1]),
-            saturated=bool((codes >= FULL_SCALE).any()),
-        )
+        ranges = np.interp(middle, self._bins, self._ranges)
+        variances = self._variances(echoes)
+        saturated = codes[echoes.profiles, echoes.peaks] >= FULL_SCALE
+        flags = np.bincount(echoes.profiles[saturated], minlength=len(beams)) > 0
+        ends = np.searchsorted(echoes.profiles, np.arange(len(beams) + 1)).tolist()
+        maximum_range = float(self._ranges[-1])
+        return [
+            Reading(
+                beam.stamp_ns,
+                beam.bearing,
+                ranges[begin:end],
+                variances[begin:end],
+                echoes.levels[begin:end],
+                maximum_range,
+                flag,
+            )
+            for beam, begin, end, flag in zip(
+                beams, ends[:-1], ends[1:], flags.tolist(), strict=True
+            )
+        ]
 
     def _variances(self, echoes: Echoes) -> Array:
         """Return the variances (k,) [m^2] that quantisation, relief and speckle make together.
@@ -107,11 +140,20 @@ class BeamSegmenter:
         return self._smallest_variance + 0.25 * jitter**2
 
 
-def _is_audible(beam: Beam) -> bool:
-    return bool(
-        beam.ranges.shape == beam.intensities.shape
-        and math.isfinite(beam.bearing)
-        and (beam.intensities > 0.0).any()
+def _runs(beams: Sequence[Beam]) -> Iterator[Sequence[Beam]]:
+    """Cut the beams where their bins change."""
+    start = 0
+    for place in range(1, len(beams)):
+        if not _are_alike(beams[place - 1], beams[place]):
+            yield beams[start:place]
+            start = place
+    if beams:
+        yield beams[start:]
+
+
+def _are_alike(first: Beam, second: Beam) -> bool:
+    return first.intensities.shape == second.intensities.shape and (
+        first.ranges is second.ranges or np.array_equal(first.ranges, second.ranges)
     )
 
 

@@ -30,11 +30,15 @@ class NoiseFloor:
         self._beams = 0
 
     def update(self, levels: Array) -> Array:
-        """Take one beam's ``levels`` (n,) [dB] in and return the floor (n,) [dB]."""
-        self._beams += 1
-        step = max(self._FIRST_STEP / self._beams, self._LAST_STEP)
-        self._median += step * np.sign(levels - self._median)
-        return np.minimum.accumulate(self._median[::-1])[::-1]
+        """Take the ``levels`` (b, n) [dB] of beams in, one by one; return their floors (b, n)."""
+        medians, step = np.empty(levels.shape), np.empty(levels.shape[1])
+        for beam, median in zip(levels, medians, strict=True):
+            self._beams += 1
+            np.sign(np.subtract(beam, self._median, out=step), out=step)
+            step *= max(self._FIRST_STEP / self._beams, self._LAST_STEP)
+            self._median += step
+            median[:] = self._median
+        return np.minimum.accumulate(medians[:, ::-1], axis=1)[:, ::-1]
 
 
 class Ringing:
@@ -60,11 +64,18 @@ class Ringing:
         )
         self._levels = np.tile(self._highest, (self._SECTORS, 1))
 
-    def update(self, levels: Array, bearing: float) -> Array:
-        """Take one beam's ``levels`` (n,) in; return the ringing (m,) of the first bins [dB]."""
-        sector = int(bearing / (2.0 * np.pi) % 1.0 * self._SECTORS) % self._SECTORS
-        ringing: Array = self._levels[sector]
-        above = levels[: ringing.size] + self._MARGIN > ringing
-        ringing += np.where(above, self._RISE, -self._FALL)
-        np.minimum(ringing, self._highest, out=ringing)
-        return ringing
+    def update(self, levels: Array, bearings: Array) -> Array:
+        """Take beams in, one by one; return the ringing (b, m) of their first bins [dB].
+
+        Their ``levels`` are (b, n) [dB], their ``bearings`` (b,) [rad].
+        """
+        near = levels[:, : self._highest.size] + self._MARGIN
+        learned = np.empty(near.shape)
+        turns = bearings / (2.0 * np.pi) % 1.0
+        sectors = (turns * self._SECTORS).astype(np.intp) % self._SECTORS
+        for number, sector in enumerate(sectors.tolist()):
+            ringing = self._levels[sector]
+            ringing += np.where(near[number] > ringing, self._RISE, -self._FALL)
+            np.minimum(ringing, self._highest, out=ringing)
+            learned[number] = ringing
+        return learned

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Echoes in one profile: levels in decibels, peaks, edges with sub-bin accuracy, variances."""
+"""Echoes in profiles: levels in decibels, peaks, edges with sub-bin accuracy."""
 
 from dataclasses import dataclass
 
@@ -10,34 +10,47 @@ from numpy.typing import NDArray
 from msss_graphslam.core.peaks import crossings, prominent_peaks
 from msss_graphslam.core.types import Array
 
-__all__ = ["Echoes", "find_echoes", "smoothing_kernel", "to_decibels"]
+__all__ = ["Echoes", "find_echoes", "smooth", "smoothing_kernel", "to_decibels"]
 
 FULL_SCALE = 255.0
 DECIBELS_OF_FULL_SCALE = 80.0
+SILENCE = -1e3
+"""Level [dB] that stands before the first bin and behind the last, below all that can be."""
 
 
 @dataclass(frozen=True, slots=True)
 class Echoes:
-    """The echoes of one profile in order of range, in units of bins.
+    """The echoes of profiles in order of profile and range, in units of bins.
 
-    ``peaks`` (k,) are bins; ``leading`` and ``trailing`` (k,) the places where the level has come
-    within the echo's drop of the peak, and leaves it; ``levels`` (k,) the peaks [dB].
+    ``profiles`` (k,) are numbers, ascending, and ``peaks`` (k,) bins; ``leading`` and ``trailing``
+    (k,) the places where the level has come within the echo's drop of the peak, and leaves it;
+    ``levels`` (k,) the peaks [dB].
     """
 
+    profiles: NDArray[np.intp]
     peaks: NDArray[np.intp]
     leading: Array
     trailing: Array
     levels: Array
 
     def first(self, count: int) -> "Echoes":
-        """Return the ``count`` nearest echoes."""
+        """Return the ``count`` nearest echoes of every profile."""
+        rank = np.arange(self.profiles.size) - np.searchsorted(self.profiles, self.profiles)
+        return self.where(rank < count)
+
+    def where(self, kept: NDArray[np.bool_]) -> "Echoes":
+        """Return those echoes for which ``kept`` (k,) is true."""
         return Echoes(
-            self.peaks[:count], self.leading[:count], self.trailing[:count], self.levels[:count]
+            self.profiles[kept],
+            self.peaks[kept],
+            self.leading[kept],
+            self.trailing[kept],
+            self.levels[kept],
         )
 
 
 def to_decibels(codes: Array, scale: str) -> Array:
-    """Return the levels [dB] of codes 0..255 (n,), and silence for NaN.
+    """Return the levels [dB] of codes 0..255 (b, n), and silence for NaN.
 
     ``db80`` is 0..80 dB (Tritech Micron). ``linear`` amplitudes are taken relative to one code,
     which makes full scale 48 dB, the level at which a Micron sees a wall.
@@ -60,36 +73,44 @@ def smoothing_kernel(echo_length: float, bin_size: float, bins: int) -> Array:
     return np.asarray(window / window.sum())
 
 
-def find_echoes(levels: Array, thresholds: Array, drop: float, dynamic_range: float) -> Echoes:
-    """Find the echoes whose peaks exceed the thresholds (n,) and the beam's dynamic range [dB].
+def smooth(levels: Array, kernel: Array) -> Array:
+    """Return profiles (b, n) convolved with the kernel (2 h + 1,), by zeros beyond their ends."""
+    half, bins = kernel.size // 2, levels.shape[1]
+    padded = np.zeros((len(levels), bins + 2 * half))
+    padded[:, half : half + bins] = levels
+    total = kernel[0] * padded[:, :bins]
+    for place in range(1, kernel.size):
+        total += kernel[place] * padded[:, place : place + bins]
+    return np.asarray(total)
 
-    An echo stands ``drop`` above the valleys to its stronger neighbours, and begins and ends
-    within the profile: a beam that is loud throughout holds none.
+
+def find_echoes(levels: Array, thresholds: Array, drop: float, dynamic_range: float) -> Echoes:
+    """Find the echoes in profiles (b, n) [dB], each for itself.
+
+    Their peaks exceed the thresholds (b, n), and come within the dynamic range of the strongest
+    that does. An echo stands ``drop`` above the valleys to its stronger neighbours, and begins and
+    ends within the profile: a beam that is loud throughout holds none.
     """
-    above = levels > thresholds
-    if not above.any():
-        return _NONE
-    thresholds = np.maximum(thresholds, levels[above].max() - dynamic_range)
-    excess = np.zeros(levels.size + 2)
-    np.maximum(levels - thresholds + drop, 0.0, out=excess[1:-1])
-    peaks = prominent_peaks(excess, drop) - 1
-    if not peaks.size:
-        return _NONE
-    return _with_edges(levels, peaks, drop)
+    strongest = np.where(levels > thresholds, levels, -np.inf).max(axis=1)
+    least = np.where(strongest > -np.inf, strongest - dynamic_range, np.inf)
+    # One sequence of all profiles, as the ends keep them apart.
+    excess = np.zeros((len(levels), levels.shape[1] + 2))
+    inner = excess[:, 1:-1]
+    np.subtract(levels, np.maximum(thresholds, least[:, None]), out=inner)
+    inner += drop
+    np.maximum(inner, 0.0, out=inner)
+    return _with_edges(levels, prominent_peaks(excess.reshape(-1), drop), drop)
 
 
 def _with_edges(levels: Array, peaks: NDArray[np.intp], drop: float) -> Echoes:
-    heights = levels[peaks]
-    profile = levels.tolist()
-    edges = [
-        crossings(profile, peak, height - drop)
-        for peak, height in zip(peaks.tolist(), heights.tolist(), strict=True)
-    ]
-    leading, trailing = np.array(edges).T
-    whole_echo = (leading > 0.0) & (trailing < levels.size - 1)
-    return Echoes(
-        peaks[whole_echo], leading[whole_echo], trailing[whole_echo], heights[whole_echo]
-    )
-
-
-_NONE = Echoes(np.zeros(0, np.intp), np.zeros(0), np.zeros(0), np.zeros(0))
+    """Return the echoes at the peaks (k,) of the profiles (b, n) with one bin more at each end."""
+    count, bins = levels.shape
+    padded = np.full((count, bins + 2), SILENCE)
+    padded[:, 1:-1] = levels
+    values = padded.reshape(-1)
+    heights = values[peaks]
+    profiles = peaks // (bins + 2)
+    first = profiles * (bins + 2) + 1
+    leading, trailing = crossings(values, peaks, heights - drop, first)
+    whole_echo = (leading > 0.0) & (trailing < bins - 1)
+    return Echoes(profiles, peaks - first, leading, trailing, heights).where(whole_echo)

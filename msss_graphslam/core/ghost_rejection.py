@@ -56,15 +56,28 @@ def reject_ghosts(readings: Sequence[Reading], config: Segmentation) -> list[Rea
     )
     surfaces = _surfaces(echoes, config)
     deficits = _strongest_at_range(echoes, config.ghost_window) - echoes.levels
-    kept = np.zeros(surfaces.shape, dtype=bool)
-    for surface in np.unique(surfaces[surfaces >= 0]):
-        members = surfaces == surface
-        seen = members.any(axis=1).sum() >= config.surface_beams
-        kept[members] = seen and np.median(deficits[members]) < config.ghost_contrast
+    beams, _ = there = np.nonzero(surfaces >= 0)
+    kept = np.ones(surfaces.shape, dtype=bool)
+    kept[there] = _stays(surfaces[there], beams, deficits[there], config)
+    whole = np.asarray(kept.all(axis=1)).tolist()
     return [
-        _select(reading, mask[: reading.ranges.size])
-        for reading, mask in zip(readings, kept, strict=True)
+        reading if is_whole else _select(reading, mask[: reading.ranges.size])
+        for reading, mask, is_whole in zip(readings, kept, whole, strict=True)
     ]
+
+
+def _stays(
+    surfaces: Indices, beams: Indices, deficits: Array, config: Segmentation
+) -> NDArray[np.bool_]:
+    """Return which echoes (m,) stay, by their surfaces, beams and deficits [dB]."""
+    _, numbers, counts = np.unique(surfaces, return_inverse=True, return_counts=True)
+    ascending = deficits[np.lexsort((deficits, numbers))]
+    ends = np.cumsum(counts)
+    first, second = ends - counts + (counts - 1) // 2, ends - counts + counts // 2
+    medians = 0.5 * (ascending[first] + ascending[second])
+    pairs = np.unique(np.stack([numbers, beams]), axis=1)  # a beam may see a surface twice
+    seen = np.bincount(pairs[0]) >= config.surface_beams
+    return np.asarray((seen & (medians < config.ghost_contrast))[numbers])
 
 
 def _table(rows: Sequence[Array]) -> Array:
@@ -88,19 +101,15 @@ def _surfaces(echoes: _Echoes, config: Segmentation) -> Indices:
 
 def _connected(size: int, first: Indices, second: Indices) -> Indices:
     """Return for each of ``size`` echoes the lowest of those that links (m,) join it to."""
-    roots = list(range(size))
-    for pair in zip(first.tolist(), second.tolist(), strict=True):
-        ends = []
-        for echo in pair:
-            while roots[echo] != echo:
-                roots[echo] = roots[roots[echo]]
-                echo = roots[echo]
-            ends.append(echo)
-        roots[max(ends)] = min(ends)
-    # A root is lower than what hangs on it, so one way up is enough.
-    for echo, root in enumerate(roots):
-        roots[echo] = roots[root]
-    return np.array(roots, dtype=np.intp)
+    roots = np.arange(size)
+    while True:
+        ends = roots[first], roots[second]
+        lower = roots.copy()
+        np.minimum.at(lower, np.maximum(*ends), np.minimum(*ends))
+        lower = lower[lower]
+        if np.array_equal(lower, roots):
+            return roots
+        roots = lower
 
 
 def _links(echoes: _Echoes, step: int, config: Segmentation) -> Indices:
@@ -145,8 +154,6 @@ def _strongest_at_range(echoes: _Echoes, window: float) -> Array:
 
 
 def _select(reading: Reading, mask: NDArray[np.bool_]) -> Reading:
-    if mask.all():
-        return reading
     return replace(
         reading,
         ranges=reading.ranges[mask],

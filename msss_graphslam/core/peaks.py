@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Peaks of a sequence of numbers, and where it falls below a level beside them."""
+"""Peaks of a sequence of numbers, and where it falls to a level beside them."""
 
 # SciPy has these, to the same bits, in a package that holds 70 MiB: the node that makes scans of
 # beams shall fit on a vehicle's computer.
@@ -14,38 +14,48 @@ from msss_graphslam.core.types import Array
 
 __all__ = ["crossings", "prominent_peaks"]
 
+Indices = NDArray[np.intp]
 
-def prominent_peaks(values: Array, prominence: float) -> NDArray[np.intp]:
+_STRIDE = 16
+
+
+def prominent_peaks(values: Array, prominence: float) -> Indices:
     """Return the peaks of (n,) values that stand ``prominence`` or more above their valleys.
 
     A peak's valley is the lowest value between it and a higher one, or the end; of the valleys to
-    its two sides the higher counts. No value may be negative. A flat top's peak is its middle.
+    its two sides the higher counts. A flat top's peak is its middle. No value may be negative, and
+    the first and the last must be 0; so sequences may stand one after another, each for itself.
     """
     peaks = _maxima(values)
-    peaks = peaks[values[peaks] >= prominence]
-    stands_out = [values[peak] - _valley(values, peak) >= prominence for peak in peaks.tolist()]
-    return np.asarray(peaks[np.array(stands_out, dtype=bool)])
+    heights = values[peaks]
+    peaks, heights = peaks[heights >= prominence], heights[heights >= prominence]
+    if not peaks.size:
+        return peaks
+    valleys = np.minimum.reduceat(values, np.append(0, peaks))
+    stands_out = heights - np.maximum(valleys[:-1], valleys[1:]) >= prominence
+    tops, lows = heights.tolist(), valleys.tolist()
+    for peak in np.flatnonzero(~stands_out).tolist():
+        before = _falls(tops[peak::-1], lows[peak::-1], prominence)
+        stands_out[peak] = before and _falls(tops[peak:], lows[peak + 1 :], prominence)
+    return np.asarray(peaks[stands_out])
 
 
-def crossings(values: Sequence[float], peak: int, level: float) -> tuple[float, float]:
-    """Return where values fall to ``level`` before and after the peak, between two of them.
+def crossings(
+    values: Array, peaks: Indices, levels: Array, origins: Indices
+) -> tuple[Array, Array]:
+    """Return where (n,) values fall to the ``levels`` (k,) before and after the ``peaks`` (k,).
 
-    It is the first or last place where they do not.
+    The places (k,), counted from the ``origins`` (k,), lie between two of the values. The first
+    and the last value must lie below all levels, and the peaks above theirs.
     """
-    left, right, last = peak, peak, len(values) - 1
-    while left > 0 and values[left] > level:
-        left -= 1
-    while right < last and values[right] > level:
-        right += 1
-    before, after = float(left), float(right)
-    if values[left] < level:
-        before += (level - values[left]) / (values[left + 1] - values[left])
-    if values[right] < level:
-        after -= (level - values[right]) / (values[right - 1] - values[right])
-    return before, after
+    left = _fallen(values, peaks, levels, -1)
+    right = _fallen(values, peaks, levels, 1)
+    before = (levels - values[left]) / (values[left + 1] - values[left])
+    after = (levels - values[right]) / (values[right - 1] - values[right])
+    return (left - origins) + before, (right - origins) - after
 
 
-def _maxima(values: Array) -> NDArray[np.intp]:
+def _maxima(values: Array) -> Indices:
     """Return the places of the local maxima, the middle of flat ones; none at an end."""
     steps = values[1:] - values[:-1]
     changes = steps.nonzero()[0]
@@ -54,10 +64,29 @@ def _maxima(values: Array) -> NDArray[np.intp]:
     return np.asarray((changes[tops] + 1 + changes[tops + 1]) >> 1)
 
 
-def _valley(values: Array, peak: int) -> float:
-    """Return the higher one of the valleys to both sides."""
-    higher = (values > values[peak]).nonzero()[0]
-    place = int(higher.searchsorted(peak))
-    first = higher[place - 1] + 1 if place else 0
-    end = higher[place] if place < higher.size else values.size
-    return max(float(values[first:peak].min()), float(values[peak:end].min()))
+def _falls(heights: Sequence[float], valleys: Sequence[float], prominence: float) -> bool:
+    """Whether a valley on the way from the first of the peaks to a higher one is deep enough.
+
+    ``valleys`` lie behind each of the peaks.
+    """
+    top = heights[0]
+    for height, valley in zip(heights, valleys, strict=True):
+        if height > top:
+            return False
+        if top - valley >= prominence:
+            return True
+    return False
+
+
+def _fallen(values: Array, peaks: Indices, levels: Array, direction: int) -> Indices:
+    """Return the first places (k,) from the peaks on that do not exceed the levels."""
+    places = peaks.copy()
+    walking = np.arange(peaks.size)
+    steps = direction * np.arange(1, _STRIDE + 1)
+    while walking.size:
+        ahead = values.take(places[walking, None] + steps, mode="clip")
+        low = ahead <= levels[walking, None]
+        stride = np.where(low.any(axis=1), low.argmax(axis=1) + 1, _STRIDE)
+        places[walking] += direction * stride
+        walking = walking[~low.any(axis=1)]
+    return places

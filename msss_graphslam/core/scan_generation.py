@@ -11,18 +11,19 @@ from msss_graphslam.config.groups import Sonar
 from msss_graphslam.core.attitude import level
 from msss_graphslam.core.compounding import between, rotation, transform_points
 from msss_graphslam.core.history import DeadReckoningHistory, Turn
-from msss_graphslam.core.types import Array, Odometry, Scan
+from msss_graphslam.core.types import Array, Odometry, Reading, Scan
 
 __all__ = [
     "generate_scan",
     "lay_out",
     "motion_covariances",
+    "motion_derivatives",
     "reckoned_motion",
     "reckoned_scan",
 ]
 
 
-def generate_scan(turn: Turn, history: DeadReckoningHistory, sonar: Sonar) -> Scan:
+def generate_scan(turn: Turn[Reading], history: DeadReckoningHistory, sonar: Sonar) -> Scan:
     """Algorithm 2: the turn's points in the frame {I} of the vehicle at its first beam.
 
     The history has to cover ``turn.end_ns``. Beams without a range support the motion only, and so
@@ -99,6 +100,15 @@ def motion_covariances(motion: Array, elapsed: Array, twist_covariance: Array) -
     """
     # Deviation: the paper's line 7 adds the global covariances of both poses as if independent.
     # Within a turn their error is one slowly changing velocity error, integrated.
+    derivative = motion_derivatives(motion, elapsed)
+    return np.asarray(derivative @ twist_covariance @ np.swapaxes(derivative, -1, -2))
+
+
+def motion_derivatives(motion: Array, elapsed: Array) -> Array:
+    """Return the derivatives (b, 3, 3) of the motion (b, 3) by a constant twist error.
+
+    ``elapsed`` (b,) are the times since the first pose [s].
+    """
     steps = np.diff(motion, axis=0, prepend=motion[:1])
     durations = np.diff(elapsed, prepend=0.0)
     derivative = np.zeros((len(motion), 3, 3))
@@ -106,7 +116,7 @@ def motion_covariances(motion: Array, elapsed: Array, twist_covariance: Array) -
     derivative[:, 0, 2] = np.cumsum(-steps[:, 1] * elapsed)
     derivative[:, 1, 2] = np.cumsum(steps[:, 0] * elapsed)
     derivative[:, 2, 2] = elapsed
-    return np.asarray(derivative @ twist_covariance @ np.swapaxes(derivative, -1, -2))
+    return derivative
 
 
 def twist_error(odometry: Odometry) -> Array:

@@ -4,14 +4,27 @@
 
 from collections import Counter
 from contextlib import nullcontext
+from dataclasses import dataclass, field
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.beam_segmentation import BeamSegmenter, reject_ghosts
 from msss_graphslam.core.history import DeadReckoningHistory, Turn, TurnDetector
 from msss_graphslam.core.scan_generation import generate_scan
-from msss_graphslam.core.types import Beam, Odometry, Scan, Stage
+from msss_graphslam.core.types import Beam, Odometry, Reading, Scan, Stage
 
-__all__ = ["ScanGenerator"]
+__all__ = ["BLOCK", "ScanGenerator"]
+
+BLOCK = 32
+"""So many beams are segmented at once, which takes half the time of one by one."""
+
+
+@dataclass(slots=True)
+class _Heard:
+    """Where a beam of the turn in progress points; what is read in it follows a little later."""
+
+    stamp_ns: int
+    bearing: float
+    reading: Reading = field(init=False)
 
 
 class ScanGenerator:
@@ -30,8 +43,9 @@ class ScanGenerator:
         self._configuration = configuration
         self._stage = stage
         self._segmenter = BeamSegmenter(configuration.sonar, configuration.segmentation)
-        self._turns = TurnDetector(configuration.scanning, refused)
-        self._waiting: list[Turn] = []
+        self._turns: TurnDetector[_Heard] = TurnDetector(configuration.scanning, refused)
+        self._unread: list[tuple[Beam, _Heard]] = []
+        self._waiting: list[Turn[Reading]] = []
         self._history = DeadReckoningHistory()
 
     @property
@@ -45,11 +59,13 @@ class ScanGenerator:
 
     def add_beam(self, beam: Beam) -> list[Scan]:
         """Algorithm 1, lines 4 and 7, for one beam, in the order of their stamps."""
-        with self._stage("beam_segmentation"):
-            reading = self._segmenter.segment(beam)
-        turn = self._turns.add(reading)
+        heard = _Heard(beam.stamp_ns, beam.bearing)
+        self._unread.append((beam, heard))
+        turn = self._turns.add(heard)
         if turn is not None:
-            self._waiting.append(turn)
+            self._waiting.append(self._read(turn))
+        elif len(self._unread) == BLOCK:
+            self._segment()
         return self._covered()
 
     def add_odometry(self, odometry: Odometry) -> list[Scan]:
@@ -61,10 +77,25 @@ class ScanGenerator:
         """Return what is left at the end, also of a turn that the odometry does not cover."""
         # Deviation: the paper leaves the last part turn out; the trajectory ends in it.
         last = self._turns.finish()
-        waiting, self._waiting = self._waiting + ([last] if last else []), []
+        if last is not None:
+            self._waiting.append(self._read(last))
+        waiting, self._waiting = self._waiting, []
         if self._history.latest is None:
             return []
         return [self._generate(turn) for turn in waiting]
+
+    def _segment(self) -> None:
+        """Read the beams that wait for it, and let go of them."""
+        unread, self._unread = self._unread, []
+        with self._stage("beam_segmentation"):
+            readings = self._segmenter.segment_all([beam for beam, _ in unread])
+        for (_, heard), reading in zip(unread, readings, strict=True):
+            heard.reading = reading
+
+    def _read(self, turn: Turn[_Heard]) -> Turn[Reading]:
+        self._segment()
+        readings = [heard.reading for heard in turn.readings]
+        return Turn(readings, turn.end_ns, turn.swept, turn.complete, turn.usable)
 
     def _covered(self) -> list[Scan]:
         scans = []
@@ -72,7 +103,7 @@ class ScanGenerator:
             scans.append(self._generate(self._waiting.pop(0)))
         return scans
 
-    def _generate(self, turn: Turn) -> Scan:
+    def _generate(self, turn: Turn[Reading]) -> Scan:
         with self._stage("scan_generation"):
             if turn.usable:
                 turn.readings = reject_ghosts(turn.readings, self._configuration.segmentation)

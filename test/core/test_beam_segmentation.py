@@ -218,3 +218,58 @@ def test_any_codes_give_finite_ranges_in_order_within_reach(codes, scale, bin_si
     assert np.all(np.diff(reading.ranges) >= 0.0)
     assert np.all((reading.ranges > 0.0) & (reading.ranges <= reading.maximum_range))
     assert np.all(reading.variances > 0.0)
+
+
+def turned_beams(seed, count=100):
+    """Beams with one to three echoes; some silent, some without a bearing, two kinds of bins."""
+    generator = np.random.default_rng(seed)
+    beams = []
+    for number in range(count):
+        echoes = [(generator.uniform(0.5, 18.0), generator.uniform(20.0, 90.0)) for _ in range(3)]
+        profile = Profile(echoes[: number % 4], bins=400 if number % 50 < 40 else 200)
+        profile.extra = generator.uniform(0.0, 12.0, profile.bins)
+        bearing = np.nan if number % 23 == 0 else generator.uniform(-np.pi, np.pi)
+        beam = profile.beam(bearing)
+        beams.append(
+            replace(beam, stamp_ns=number, intensities=beam.intensities * (number % 9 > 0))
+        )
+    return beams
+
+
+@pytest.mark.parametrize("scale", ["db80", "linear"])
+@pytest.mark.parametrize("block", [2, 32, 100])
+def test_many_beams_at_once_give_the_readings_of_one_by_one(block, scale):
+    beams = turned_beams(8)
+    first, second = segmenter(scale), segmenter(scale)
+    expected = [first.segment(beam) for beam in beams]
+    readings = []
+    for start in range(0, len(beams), block):
+        readings += second.segment_all(beams[start : start + block])
+    assert sum(reading.ranges.size for reading in readings) > 90
+    assert any(reading.saturated for reading in readings)
+    assert [contents(one) for one in readings] == [contents(one) for one in expected]
+
+
+def contents(reading):
+    return (
+        reading.stamp_ns,
+        reading.maximum_range,
+        reading.saturated,
+        reading.empty,
+        *(part.tobytes() for part in (reading.ranges, reading.variances, reading.levels)),
+    )
+
+
+def test_no_beams_give_no_readings():
+    assert segmenter().segment_all([]) == []
+
+
+def test_empty_beams_among_others_stay_in_their_place_and_teach_nothing():
+    loud, silent = Profile([(6.0, 48.0)]).beam(), Profile([]).beam()
+    silent = replace(silent, intensities=np.zeros(400))
+    odd = Beam(9, 0.0, loud.ranges, np.full(3, 9.0))
+    readings = segmenter().segment_all([silent, loud, odd, silent, loud])
+    assert [reading.empty for reading in readings] == [True, False, True, True, False]
+    alone = segmenter().segment_all([loud, loud])
+    assert contents(readings[1]) == contents(alone[0])
+    assert contents(readings[4]) == contents(alone[1])

@@ -2,16 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
 import pytest
+from scipy.signal import find_peaks
 
-from msss_graphslam.core.echo_extraction import find_echoes, smoothing_kernel, to_decibels
+from msss_graphslam.core.echo_extraction import (
+    find_echoes,
+    smooth,
+    smoothing_kernel,
+    to_decibels,
+)
 
 DROP = 6.0
 DYNAMIC_RANGE = 20.0
 
 
 def echoes_of(levels, threshold=14.0):
-    levels = np.asarray(levels, dtype=float)
-    return find_echoes(levels, np.full(levels.size, threshold), DROP, DYNAMIC_RANGE)
+    levels = np.atleast_2d(np.asarray(levels, dtype=float))
+    return find_echoes(levels, np.full(levels.shape, threshold), DROP, DYNAMIC_RANGE)
 
 
 def test_codes_of_a_micron_are_decibels():
@@ -77,3 +83,71 @@ def test_echoes_come_in_order_of_range_and_can_be_cut():
 )
 def test_what_does_not_begin_and_end_is_no_echo(levels):
     assert echoes_of(levels).peaks.size == 0
+
+
+def smoothed_profiles(seed, count=12):
+    generator = np.random.default_rng(seed)
+    bins = int(generator.integers(3, 90))
+    codes = generator.integers(0, 61, (count, bins)).astype(float)
+    codes[generator.random(count) < 0.2] = 0.0
+    kernel = smoothing_kernel(0.2, generator.choice([0.02, 0.1, 0.3]), bins)
+    return smooth(codes, kernel), generator.uniform(10.0, 50.0, (count, bins))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_echoes_of_many_profiles_are_those_of_each(seed):
+    levels, thresholds = smoothed_profiles(seed)
+    together = find_echoes(levels, thresholds, DROP, DYNAMIC_RANGE)
+    for number, (profile, threshold) in enumerate(zip(levels, thresholds, strict=True)):
+        alone = find_echoes(profile[None], threshold[None], DROP, DYNAMIC_RANGE)
+        own = together.where(together.profiles == number)
+        for name in ("peaks", "leading", "trailing", "levels"):
+            np.testing.assert_array_equal(getattr(own, name), getattr(alone, name))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_echoes_are_those_of_scipy_s_peaks(seed):
+    found = 0
+    for levels, thresholds in zip(*smoothed_profiles(seed), strict=True):
+        echoes = find_echoes(levels[None], thresholds[None], DROP, DYNAMIC_RANGE)
+        above = levels > thresholds
+        least = levels[above].max(initial=-np.inf) - DYNAMIC_RANGE
+        limits = np.maximum(thresholds, least) if above.any() else np.full(levels.size, np.inf)
+        excess = np.pad(np.maximum(levels - limits + DROP, 0.0), 1)
+        peaks = find_peaks(excess, prominence=DROP)[0] - 1
+        edges = np.array([edges_of(levels, peak) for peak in peaks]).reshape(-1, 2)
+        whole = (edges[:, 0] > 0.0) & (edges[:, 1] < levels.size - 1)
+        np.testing.assert_array_equal(echoes.peaks, peaks[whole])
+        np.testing.assert_allclose(
+            np.column_stack([echoes.leading, echoes.trailing]), edges[whole], atol=1e-12
+        )
+        found += whole.sum()
+    assert found or levels.size < 20
+
+
+def edges_of(levels, peak):
+    """Walk down from the peak on both sides, bin by bin."""
+    level, edges = levels[peak] - DROP, []
+    for step, end in ((-1, 0), (1, levels.size - 1)):
+        place = peak
+        while place != end and levels[place] > level:
+            place += step
+        below = level - levels[place]
+        share = below / (levels[place - step] - levels[place]) if below > 0.0 else 0.0
+        edges.append(place - step * share)
+    return edges
+
+
+def test_the_nearest_are_cut_for_each_profile():
+    one = [0.0, 40.0, 0.0, 50.0, 0.0, 45.0, 0.0]
+    echoes = echoes_of([one, np.zeros(7), one]).first(2)
+    assert echoes.profiles.tolist() == [0, 0, 2, 2]
+    assert echoes.peaks.tolist() == [1, 3, 1, 3]
+
+
+@pytest.mark.parametrize("size", [1, 3, 5, 11])
+def test_smoothing_is_a_convolution(size):
+    profiles = np.random.default_rng(size).uniform(0.0, 80.0, (7, 31))
+    kernel = np.random.default_rng(1).uniform(0.0, 1.0, size)
+    expected = [np.convolve(profile, kernel[::-1], "same") for profile in profiles]
+    np.testing.assert_allclose(smooth(profiles, kernel), expected, atol=1e-11)

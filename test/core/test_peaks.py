@@ -30,20 +30,43 @@ def test_peaks_are_scipy_s(prominence: float, flat: bool) -> None:
     assert found > len(SEEDS)
 
 
+@pytest.mark.parametrize("prominence", [0.5, 1.0, 3.0])
+def test_sequences_one_after_another_are_each_for_itself(prominence: float) -> None:
+    several = [np.pad(profile(seed, flat=seed % 2 == 0), 1) for seed in SEEDS]
+    starts = np.cumsum([0, *(values.size for values in several)])
+    expected = [
+        start + find_peaks(values, prominence=prominence)[0]
+        for start, values in zip(starts, several, strict=False)
+    ]
+    found = prominent_peaks(np.concatenate(several), prominence)
+    np.testing.assert_array_equal(found, np.concatenate(expected))
+
+
 @pytest.mark.parametrize("flat", [True, False])
 @pytest.mark.parametrize("drop", [0.5, 2.0])
 def test_crossings_are_scipy_s(drop: float, flat: bool) -> None:
     for seed in SEEDS:
-        values = profile(seed, flat=flat)
-        peaks = prominent_peaks(np.pad(values, 1), drop) - 1
+        values = np.concatenate([profile(seed, flat=flat), profile(seed + 1, flat=flat)])
+        values = np.pad(values, 1, constant_values=-drop - 1.0)
+        peaks = find_peaks(values, prominence=drop)[0]
         whole = (
             np.full(peaks.size, drop),
             np.zeros(peaks.size, np.intp),
             np.full(peaks.size, values.size - 1),
         )
         _, _, left, right = peak_widths(values, peaks, rel_height=1.0, prominence_data=whole)
-        found = [crossings(values.tolist(), peak, values[peak] - drop) for peak in peaks.tolist()]
-        assert [list(pair) for pair in found] == np.column_stack([left, right]).tolist()
+        before, after = crossings(values, peaks, values[peaks] - drop, np.zeros_like(peaks))
+        assert before.tolist() == left.tolist()
+        assert after.tolist() == right.tolist()
+        moved, _ = crossings(values, peaks, values[peaks] - drop, peaks)
+        assert moved == pytest.approx(left - peaks)
+
+
+@pytest.mark.parametrize("width", [1, 15, 16, 17, 32, 33, 100])
+def test_crossings_are_found_however_far_they_are(width: int) -> None:
+    values = np.r_[0.0, np.full(width, 9.0), 10.0, np.full(2 * width, 9.0), 0.0]
+    before, after = crossings(values, np.array([width + 1]), np.array([4.5]), np.array([0]))
+    assert (before.tolist(), after.tolist()) == ([0.5], [3.0 * width + 1.5])
 
 
 @pytest.mark.parametrize("values", [[], [1.0], [1.0, 2.0], [2.0, 2.0, 2.0], [0.0, 1.0, 2.0, 3.0]])

@@ -148,7 +148,7 @@ def test_roll_and_pitch_are_levelled() -> None:
     roll, pitch = 0.1, -0.15
     scan = generate_scan(turn_of([[6.0]] * BEAMS), history_of(driven(), roll, pitch), SONAR)
     body = 6.0 * np.column_stack([np.cos(bearings), np.sin(bearings), np.zeros(BEAMS)])
-    levelled = body @ rotation_matrix(np.array([roll, pitch, 0.0])).T
+    levelled = body @ np.array(rotation_matrix((roll, pitch, 0.0))).T
     np.testing.assert_allclose(scan.body_points, levelled[:, :2], atol=1e-12)
 
 
