@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""A scan between two keyframes, and how its points move when either of them does."""
+"""A scan bent so that it ends at the next keyframe, and how its points move with its twist."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,42 +8,74 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from msss_graphslam.core.compounding import between, compose, rotation, transform_points
+from msss_graphslam.core.compounding import between, rotation, transform_points
 from msss_graphslam.core.line_features import LineFeatures, line_features
-from msss_graphslam.core.scan_generation import lay_out
 from msss_graphslam.core.trajectory_correction import closed_form, correct_motion
 from msss_graphslam.core.types import Array, Scan
 
-__all__ = ["BentScan", "bend", "reckoned_ends"]
+__all__ = ["BentScan", "Hanging", "Vectors", "bend", "reckoned_ends", "vectors"]
 
-QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
+Vectors = NDArray[np.complex128]
+"""Plane vectors (n,) as x + i y: the real part of conj(a) b is the dot product."""
+
+
+def vectors(rows: Array) -> Vectors:
+    """Return the first two columns of ``rows`` (n, 2 or more)."""
+    return np.asarray(rows[:, 0] + 1j * rows[:, 1])
+
+
+@dataclass(frozen=True, slots=True)
+class Hanging:
+    """How places in the scan's frame move with its twist error, each hanging on a beam.
+
+    A change u + i v of the translation and w of the rotation moves the place p by
+    ``drift`` (u + i v) + (``swing`` + i ``elapsed`` p) w; all (n,), in s, m s and s.
+    """
+
+    drift: Vectors
+    swing: Vectors
+    elapsed: Array
+
+    @staticmethod
+    def together(several: Sequence["Hanging"]) -> "Hanging":
+        """Return one after the other."""
+        return Hanging(
+            np.concatenate([one.drift for one in several]),
+            np.concatenate([one.swing for one in several]),
+            np.concatenate([one.elapsed for one in several]),
+        )
+
+    def at(self, chosen: NDArray[np.intp]) -> "Hanging":
+        """Return the same of the places chosen."""
+        return Hanging(self.drift[chosen], self.swing[chosen], self.elapsed[chosen])
+
+    def along(self, normals: Vectors, places: Vectors) -> Array:
+        """Return how far (n, 3) the places move along normals, by surge, sway and yaw rate."""
+        translated = np.conj(normals) * self.drift
+        turned = np.real(np.conj(normals) * (self.swing + 1j * self.elapsed * places))
+        return np.column_stack([translated.real, -translated.imag, turned])
 
 
 @dataclass(frozen=True, slots=True)
 class BentScan:
-    """A scan laid out so that it starts at its own keyframe and ends at the next.
+    """A scan laid out, in the frame of its keyframe, so that it ends at the next.
 
-    ``start`` (3,) is the keyframe in ``map``; ``lines`` are its local lines in that frame, None
-    with too few points; ``normals`` (n, 2), ``centres`` (n, 2), ``points`` (n, 2) and their
-    ``covariances`` (n, 2, 2) the same in ``map``, the sonar's noise alone; ``beams`` (b, 2) the
-    vehicle's places in ``map`` and ``beam_index`` (n,) the beam of each point. ``by_keyframes``
-    (b, 3, 6) derives the vehicle's pose at each beam by the two keyframes.
-    ``twist`` (3,) is what has to be added to the reckoned surge, sway [m/s] and yaw rate [rad/s]
-    for all this, ``twist_by_keyframes`` (3, 6) its derivative, ``duration`` [s] the scan's.
+    ``relative`` (3,) is the next keyframe in that frame; ``twist`` (3,) is what has to be added to
+    the reckoned surge, sway [m/s] and yaw rate [rad/s] for it, ``twist_by_relative`` (3, 3) its
+    derivative. ``lines`` (n) are the local lines, None with too few points, ``lines_hanging``
+    says how they move; of the m points on a line ``points``, ``normals`` and ``covariances``
+    (m, 2, 2), the sonar's noise alone, and ``points_hanging``.
     """
 
-    start: Array
-    lines: LineFeatures | None
-    normals: Array
-    centres: Array
-    points: Array
-    covariances: Array
-    beams: Array
-    beam_index: NDArray[np.intp]
-    by_keyframes: Array
+    relative: Array
     twist: Array
-    twist_by_keyframes: Array
-    duration: float
+    twist_by_relative: Array
+    lines: LineFeatures | None
+    lines_hanging: Hanging
+    points: Vectors
+    normals: Vectors
+    covariances: Array
+    points_hanging: Hanging
 
 
 def reckoned_ends(scans: Sequence[Scan]) -> list[Array]:
@@ -53,36 +85,30 @@ def reckoned_ends(scans: Sequence[Scan]) -> list[Array]:
     return [between(scan.odometry, end) for scan, end in zip(scans, ends, strict=True)]
 
 
-def bend(scan: Scan, reckoned_end: Array, start: Array, end: Array, duration: float) -> BentScan:
-    """Lay out a scan between the keyframes ``start`` and ``end`` (3,) in ``map``.
+def bend(scan: Scan, reckoned_end: Array, relative: Array, duration: float) -> BentScan:
+    """Lay out a scan such that the next keyframe is at ``relative`` (3,) in its frame.
 
-    ``reckoned_end`` (3,) is where dead reckoning has the end in the scan's frame, ``duration``
-    [s] later. The correction is that of equation 14, the same at every beam.
+    ``reckoned_end`` (3,) is where dead reckoning has that keyframe, ``duration`` [s] later. The
+    correction is that of equation 14, the same at every beam.
     """
-    relative = between(start, end)
     correction = correct_motion(scan.motion, reckoned_end, relative, closed_form)
-    laid_out = lay_out(scan, correction.poses, np.zeros((3, 3)))
-    lines = line_features(laid_out.points, laid_out.covariances)
     by_twist = _by_twist(np.vstack([correction.poses, relative]), duration)
-    by_relative = np.linalg.inv(by_twist[-1])
-    turn = rotation(start[2])
-    relative_by_keyframes = _relative_by_keyframes(relative, turn)
-    no_points = np.empty((0, 2))
+    hanging = _hanging(correction.poses, by_twist).at(scan.beam_index)
+    at_hits = correction.poses[scan.beam_index]
+    points, turns = transform_points(at_hits, scan.body_points), rotation(at_hits[:, 2])
+    covariances = turns @ scan.body_covariances @ np.swapaxes(turns, -1, -2)
+    lines = line_features(points, covariances)
+    flat = np.flatnonzero(lines.flat) if lines else np.empty(0, dtype=np.intp)
     return BentScan(
-        start=start,
-        lines=lines,
-        normals=lines.normals @ turn.T if lines else no_points,
-        centres=transform_points(start, lines.centres) if lines else no_points,
-        points=transform_points(start, laid_out.points),
-        covariances=turn @ laid_out.covariances @ turn.T,
-        beams=compose(start, correction.poses)[:, :2],
-        beam_index=scan.beam_index,
-        by_keyframes=_by_keyframes(
-            correction.poses, turn, by_twist[:-1] @ by_relative @ relative_by_keyframes
-        ),
+        relative=relative,
         twist=correction.delta * len(scan.motion) / duration,
-        twist_by_keyframes=by_relative @ relative_by_keyframes,
-        duration=duration,
+        twist_by_relative=np.linalg.inv(by_twist[-1]),
+        lines=lines,
+        lines_hanging=hanging,
+        points=vectors(points[flat]),
+        normals=vectors(lines.normals[flat]) if lines else np.empty(0, dtype=complex),
+        covariances=covariances[flat],
+        points_hanging=hanging.at(flat),
     )
 
 
@@ -102,21 +128,9 @@ def _by_twist(motion: Array, duration: float) -> Array:
     return derivative
 
 
-def _relative_by_keyframes(relative: Array, turn: Array) -> Array:
-    """Return the derivative (3, 6) of the end in the start's frame by both in ``map``."""
-    derivative = np.zeros((3, 6))
-    derivative[:2, :2] = -turn.T
-    derivative[:2, 2] = -QUARTER_TURN @ relative[:2]
-    derivative[2, 2] = -1.0
-    derivative[:2, 3:5] = turn.T
-    derivative[2, 5] = 1.0
-    return derivative
-
-
-def _by_keyframes(motion: Array, turn: Array, motion_by_keyframes: Array) -> Array:
-    """Return the derivatives (b, 3, 6) of the beams' poses in ``map`` by both keyframes."""
-    derivative = motion_by_keyframes.copy()
-    derivative[:, :2] = turn @ motion_by_keyframes[:, :2]
-    derivative[:, range(3), range(3)] += 1.0
-    derivative[:, :2, 2] += motion[:, :2] @ turn.T @ QUARTER_TURN.T
-    return derivative
+def _hanging(motion: Array, by_twist: Array) -> Hanging:
+    """Return how places move that hang on the beams at ``motion`` (b, 3)."""
+    by_twist = by_twist[: len(motion)]
+    elapsed = by_twist[:, 2, 2]
+    swing = vectors(by_twist[:, :, 2]) - 1j * elapsed * vectors(motion)
+    return Hanging(vectors(by_twist[:, :, 0]), swing, elapsed)

@@ -1,16 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which scans joint smoothing aligns, and how far apart it looks for their points at first."""
+"""Which scans joint smoothing aligns, what they count, and how far apart it looks at first."""
 
 from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from msss_graphslam.core.scan_generation import motion_covariances, reckoned_motion
-from msss_graphslam.core.types import Constraint, ConstraintKind, Scan
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
 
-__all__ = ["first_reach", "pairs_of"]
+__all__ = ["first_reach", "pairs_of", "weights_of"]
 
 
 def pairs_of(constraints: Sequence[Constraint], enough: int) -> list[tuple[int, int]]:
@@ -33,6 +34,17 @@ def pairs_of(constraints: Sequence[Constraint], enough: int) -> list[tuple[int, 
             or max(partners[entry.first], partners[entry.second]) < enough
         }
     )
+
+
+def weights_of(pairs: NDArray[np.intp], count: int) -> Array:
+    """Return what each of the ``pairs`` (p, 2) counts (p,).
+
+    The noise of its scans is in all their other pairs as well. K scans of one wall make
+    K (K - 1) / 2 pairs; at 2 / K each they say of a scan's place what its own noise and a wall
+    known by the others allow, and no more.
+    """
+    partners = np.bincount(pairs.ravel(), minlength=count)
+    return np.asarray(2.0 / (1.0 + 0.5 * partners[pairs].sum(axis=1)))
 
 
 def first_reach(scans: Sequence[Scan], constraints: Sequence[Constraint], narrow: float) -> float:

@@ -28,7 +28,8 @@ class LineFeatures:
     ``points`` (n, 2) and their ``covariances`` (n, 2, 2); the lines' ``centres`` (n, 2), their
     ``normals`` (n, 2) towards the sensor, ``variances`` (n,) [m^2] of a point along the normal,
     ``reach`` (n,) [m] how far a line is supported, ``flat`` (n,) whether there is a line at all;
-    ``tree`` finds the nearest point.
+    ``tree`` finds the nearest point. ``slips`` (n, 2, 3) [m] is how the points move together for
+    a unit of the error of the scan's motion, see ``point_slips``.
     """
 
     points: Array
@@ -39,13 +40,17 @@ class LineFeatures:
     reach: Array
     flat: np.ndarray
     tree: "cKDTree"
+    slips: Array
 
 
-def line_features(points: Array, covariances: Array) -> LineFeatures | None:
+def line_features(
+    points: Array, covariances: Array, slips: Array | None = None
+) -> LineFeatures | None:
     """Fit a line through each point's neighbours; None with fewer than NEIGHBOURS points.
 
     ``points`` (n, 2) [m] and ``covariances`` (n, 2, 2) [m^2] are those of a scan. The number of
-    neighbours, not a radius, sets the scale: far points lie farther apart.
+    neighbours, not a radius, sets the scale: far points lie farther apart. Without ``slips``
+    (n, 2, 3) the motion has no error that points share.
     """
     if len(points) < NEIGHBOURS:
         return None
@@ -57,12 +62,8 @@ def line_features(points: Array, covariances: Array) -> LineFeatures | None:
     distances, neighbours = np.asarray(found[0]), np.asarray(found[1])
     local = points[neighbours]
     centres = local.mean(axis=1)
-    spread = local - centres[:, None]
-    scatter = np.einsum("nki,nkj->nij", spread, spread) / NEIGHBOURS
-    eigenvalues, eigenvectors = np.linalg.eigh(scatter)
-    normals = eigenvectors[:, :, 0]
+    normals, thickness, length = _axes(local - centres[:, None])
     normals = np.where(np.sum(normals * centres, axis=1)[:, None] > 0.0, -normals, normals)
-    thickness, length = np.sqrt(np.maximum(eigenvalues.T, 0.0))
     measured = np.einsum("ni,nij,nj->n", normals, covariances, normals)
     return LineFeatures(
         points=points,
@@ -73,7 +74,22 @@ def line_features(points: Array, covariances: Array) -> LineFeatures | None:
         reach=distances[:, -1],
         flat=(thickness < FLATNESS * length) & _supported(distances),
         tree=tree,
+        slips=np.zeros((len(points), 2, 3)) if slips is None else slips,
     )
+
+
+def _axes(spread: Array) -> tuple[Array, Array, Array]:
+    """Return the normals (n, 2) of the lines through points (n, k, 2) around the origin.
+
+    With the standard deviations (n,) along the normals and along the lines.
+    """
+    x, y = spread[..., 0], spread[..., 1]
+    sums = np.stack([x * x, y * y, x * y]).mean(axis=-1)
+    middle, half, mixed = 0.5 * (sums[0] + sums[1]), 0.5 * (sums[0] - sums[1]), sums[2]
+    angle = 0.5 * np.arctan2(mixed, half)
+    radius = np.hypot(half, mixed)
+    thickness, length = np.sqrt(np.maximum([middle - radius, middle + radius], 0.0))
+    return np.column_stack([-np.sin(angle), np.cos(angle)]), thickness, length
 
 
 def _supported(distances: Array) -> np.ndarray:

@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from msss_graphslam.core.pose_covariances import pose_covariances
 from msss_graphslam.core.types import Array
 
 __all__ = ["NormalEquations"]
-
-AT_ONCE = 64
-"""Poses whose covariances are solved for together: bounds the memory, not the result."""
 
 
 class NormalEquations:
@@ -20,18 +18,24 @@ class NormalEquations:
 
     def __init__(self, count: int) -> None:
         self._count = count
-        self._rows: list[NDArray[np.intp]] = []
-        self._columns: list[NDArray[np.intp]] = []
-        self._entries: list[Array] = []
+        self._whole: Any = None
         self._gradient = np.zeros(3 * count)
         self._factors: Any = None
 
-    def add(self, nodes: list[int], information: Array, gradient: Array) -> None:
-        """Add a measurement of k poses: (3k, 3k) and (3k,); a pose may be named twice."""
-        places = (3 * np.array(nodes)[:, None] + np.arange(3)).ravel()
-        self._rows.append(np.repeat(places, len(places)))
-        self._columns.append(np.tile(places, len(places)))
-        self._entries.append(information.ravel())
+    def add(self, nodes: NDArray[np.intp], information: Array, gradient: Array) -> None:
+        """Add m measurements of k poses each, ``nodes`` (m, k); one may name a pose twice.
+
+        ``information`` (m, 3k, 3k) and ``gradient`` (m, 3k).
+        """
+        # It holds memory that a node does without until the end.
+        from scipy.sparse import csc_matrix
+
+        width = 3 * nodes.shape[1]
+        places = (3 * nodes[:, :, None] + np.arange(3)).astype(np.int32).reshape(-1, width)
+        indices = np.repeat(places, width, axis=1).ravel(), np.tile(places, width).ravel()
+        size = 3 * self._count
+        added = csc_matrix((information.ravel(), indices), shape=(size, size))
+        self._whole = added if self._whole is None else self._whole + added
         np.add.at(self._gradient, places, gradient)
         self._factors = None
 
@@ -40,18 +44,12 @@ class NormalEquations:
 
         Raises RuntimeError where the measurements leave one undetermined.
         """
-        return np.asarray(-self._solve(self._gradient[3:])).reshape(-1, 3)
+        return np.asarray(-self._factorised().solve(self._gradient[3:])).reshape(-1, 3)
 
     def covariances(self) -> Array:
         """Return the covariances (count, 3, 3) of the poses, the first one's being zero."""
         result = np.zeros((self._count, 3, 3))
-        size = 3 * (self._count - 1)
-        for start in range(0, size, 3 * AT_ONCE):
-            stop = min(start + 3 * AT_ONCE, size)
-            columns = self._solve(np.eye(size, stop - start, -start))
-            for place in range(start, stop, 3):
-                own = columns[place : place + 3, place - start : place - start + 3]
-                result[place // 3 + 1] = 0.5 * (own + own.T)
+        result[1:] = pose_covariances(self._whole[3:, 3:])
         return result
 
     def covariance_of_last(self, count: int) -> Array:
@@ -59,18 +57,19 @@ class NormalEquations:
         size, width = 3 * (self._count - 1), 3 * count
         result = np.zeros((width, width))
         free = min(size, width)
-        columns = self._solve(np.eye(size, free, free - size))
+        columns = self._factorised().solve(np.eye(size, free, free - size))
         result[-free:, -free:] = columns[-free:]
         return 0.5 * (result + result.T)
 
-    def _solve(self, right: Array) -> Array:
+    def _factorised(self) -> Any:
         if self._factors is None:
-            # It holds memory that a node does without until the end.
-            from scipy.sparse import csc_matrix
             from scipy.sparse.linalg import splu
 
-            places = np.concatenate(self._rows), np.concatenate(self._columns)
-            size = 3 * self._count
-            whole = csc_matrix((np.concatenate(self._entries), places), shape=(size, size))
-            self._factors = splu(whole[3:, 3:])
-        return np.asarray(self._factors.solve(right))
+            # Symmetric and positive definite: the diagonal is as good a pivot as any.
+            self._factors = splu(
+                self._whole[3:, 3:],
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+        return self._factors

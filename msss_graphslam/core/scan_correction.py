@@ -3,7 +3,6 @@
 """Scans made anew from the corrected trajectory, Section VII."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 from msss_graphslam.core.compounding import between
 from msss_graphslam.core.motion_feedback import offset_motion
@@ -11,7 +10,7 @@ from msss_graphslam.core.scan_generation import lay_out
 from msss_graphslam.core.trajectory_correction import Solver, correct_motion
 from msss_graphslam.core.types import Array, Scan, TwistError
 
-__all__ = ["correct_scan", "corrected_scans"]
+__all__ = ["correct_scan", "corrected_scan", "corrected_scans"]
 
 
 def correct_scan(
@@ -30,21 +29,26 @@ def correct_scan(
 def corrected_scans(
     scans: Sequence[Scan], poses: Array, solver: Solver, known: TwistError | None
 ) -> list[Scan]:
-    """Return all scans, as dead reckoning laid them out, made anew by the poses (n, 3).
+    """Return all scans, as dead reckoning laid them out, made anew by the poses (n, 3)."""
+    rows = list(zip(scans, poses, strict=True))
+    return [corrected_scan(number, scans, poses, solver, known) for number, _ in enumerate(rows)]
 
-    Their motion's error stays as uncertain as dead reckoning says. The last one, which no keyframe
+
+def corrected_scan(
+    number: int, scans: Sequence[Scan], poses: Array, solver: Solver, known: TwistError | None
+) -> Scan:
+    """Return one of the scans made anew by the poses (n, 3).
+
+    Its motion's error stays as uncertain as dead reckoning says. The last one, which no keyframe
     follows, has the twist error taken out that is known by then.
     """
+    scan = scans[number]
+    if number == len(scans) - 1:
+        return _with_twist_error(scan, known)
     # What one match has shown of the twist is too sure of itself here: pairs matched again with so
-    # small a motion error draw each other along, farther with every pass.
-    pairs = zip(pairwise(scans), pairwise(poses), strict=True)
-    corrected = [
-        correct_scan(scan, following, between(*ends), solver, scan.twist_covariance)[0]
-        for (scan, following), ends in pairs
-    ]
-    if scans:
-        corrected.append(_with_twist_error(scans[-1], known))
-    return corrected
+    # small a motion error draw each other along.
+    target = between(poses[number], poses[number + 1])
+    return correct_scan(scan, scans[number + 1], target, solver, scan.twist_covariance)[0]
 
 
 def _with_twist_error(scan: Scan, known: TwistError | None) -> Scan:

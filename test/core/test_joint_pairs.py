@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, BLIND, moving_scans
 
-from msss_graphslam.core.joint_pairs import first_reach, pairs_of
+from msss_graphslam.core.joint_pairs import first_reach, pairs_of, weights_of
 from msss_graphslam.core.types import Constraint, ConstraintKind
 
 ODOMETRY, CONSECUTIVE, LOOP = ConstraintKind
@@ -52,3 +52,13 @@ def test_reach_is_narrow_where_most_matched() -> None:
 
 def test_reach_of_one_scan() -> None:
     assert first_reach(moving_scans(BASIN, count=1)[0], [], 0.5) == 0.5
+
+
+def test_a_pair_counts_the_less_the_more_others_its_scans_have() -> None:
+    alone = np.array([[0, 1]])
+    np.testing.assert_allclose(weights_of(alone, 2), [1.0])
+    triangle = np.array([[0, 1], [0, 2], [1, 2]])
+    np.testing.assert_allclose(weights_of(triangle, 3), 2.0 / 3.0)
+    star = np.array([[0, 1], [0, 2], [0, 3]])
+    np.testing.assert_allclose(weights_of(star, 5), 2.0 / 3.0)
+    assert weights_of(np.empty((0, 2), dtype=np.intp), 3).shape == (0,)

@@ -7,6 +7,10 @@ from msss_graphslam.core.normal_equations import NormalEquations
 from msss_graphslam.core.types import Array
 
 
+def add(equations: NormalEquations, nodes: list[int], information: Array, gradient: Array) -> None:
+    equations.add(np.array([nodes]), information[None], gradient[None])
+
+
 def chain(count: int) -> tuple[NormalEquations, Array, Array]:
     """Random measurements of neighbours and of a loop, and the same as dense matrices."""
     rng = np.random.default_rng(3)
@@ -16,7 +20,7 @@ def chain(count: int) -> tuple[NormalEquations, Array, Array]:
     for nodes in edges:
         jacobian = rng.normal(size=(3 * len(nodes) + 2, 3 * len(nodes)))
         error = rng.normal(size=len(jacobian))
-        equations.add(nodes, jacobian.T @ jacobian, jacobian.T @ error)
+        add(equations, nodes, jacobian.T @ jacobian, jacobian.T @ error)
         select = np.zeros((3 * len(nodes), 3 * count))
         for place, node in enumerate(nodes):
             select[3 * place : 3 * place + 3, 3 * node : 3 * node + 3] = np.eye(3)
@@ -55,12 +59,33 @@ def test_last_poses_together() -> None:
 def test_a_measurement_that_comes_later_counts() -> None:
     equations, _, _ = chain(3)
     before = np.linalg.det(equations.covariances()[2])
-    equations.add([2], 100.0 * np.eye(3), np.zeros(3))
+    add(equations, [2], 100.0 * np.eye(3), np.zeros(3))
     assert np.linalg.det(equations.covariances()[2]) < 0.5 * before
 
 
 def test_a_pose_that_nothing_holds_is_refused() -> None:
     equations = NormalEquations(3)
-    equations.add([0, 1], np.eye(6), np.zeros(6))
+    add(equations, [0, 1], np.eye(6), np.zeros(6))
     with pytest.raises(RuntimeError):
         equations.solution()
+    with pytest.raises(RuntimeError):
+        equations.covariances()
+
+
+def test_measurements_added_together_are_the_sum_of_each() -> None:
+    together, apart = NormalEquations(4), NormalEquations(4)
+    rng = np.random.default_rng(6)
+    nodes = np.array([[0, 1], [1, 2], [2, 3], [1, 2]])
+    jacobians, gradients = rng.normal(size=(4, 8, 6)), rng.normal(size=(4, 6))
+    information = np.swapaxes(jacobians, 1, 2) @ jacobians
+    together.add(nodes, information, gradients)
+    for number in (3, 0, 2, 1):
+        add(apart, list(nodes[number]), information[number], gradients[number])
+    np.testing.assert_allclose(together.solution(), apart.solution())
+    np.testing.assert_allclose(together.covariances(), apart.covariances())
+
+
+def test_one_pose_is_certain() -> None:
+    equations = NormalEquations(1)
+    add(equations, [0], np.eye(3), np.ones(3))
+    np.testing.assert_array_equal(equations.covariances(), np.zeros((1, 3, 3)))

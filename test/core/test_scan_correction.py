@@ -21,7 +21,7 @@ SOLVERS = pytest.mark.parametrize("solver", [closed_form, nelder_mead])
 @cache
 def scans() -> tuple[Scan, ...]:
     """As dead reckoning lays them out."""
-    return estimated("dead_reckoning").first_scans
+    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def reckoned() -> Array:
