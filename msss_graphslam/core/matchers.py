@@ -8,6 +8,7 @@ from msss_graphslam.config.groups import Matching
 from msss_graphslam.core import spic
 from msss_graphslam.core.line_features import line_features
 from msss_graphslam.core.match_result import MatchResult
+from msss_graphslam.core.point_slips import point_slips
 from msss_graphslam.core.point_to_line import match_lines
 from msss_graphslam.core.types import Array, Scan
 
@@ -59,7 +60,7 @@ class LineMatcher:
 
     def prepare(self, scan: Scan) -> Any:
         """Return the scan's local lines."""
-        return line_features(scan.points, scan.covariances)
+        return line_features(scan.points, scan.covariances, point_slips(scan))
 
     def match(
         self, reference: Any, current: Any, initial: Array, initial_covariance: Array

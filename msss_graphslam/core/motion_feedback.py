@@ -5,14 +5,18 @@
 # Deviation: not in the paper. Without a DVL the assumed speed is wrong for minutes; the corrected
 # trajectory of the turns so far knows better.
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from msss_graphslam.config.groups import DeadReckoning
-from msss_graphslam.core.types import Array
+from msss_graphslam.core.types import Array, TwistError
 
 __all__ = ["MotionFeedback", "Persistence", "offset_motion", "persistence_of"]
+
+SHORT = 1e-3
+"""Share of the correlation time in which an error stays what it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,16 +32,43 @@ class Persistence:
     slow: Array
 
     def over(self, interval: float, covariance: Array) -> Array:
-        """Return the share (3,) that outlasts ``interval`` [s] of an error's covariance (3, 3)."""
+        """Return what is left (3,) of an error of this covariance (3, 3) in the next turn.
+
+        Errors are means over turns of ``interval`` [s] each, which are more alike than the
+        process at their beginnings.
+        """
         variances = np.maximum(np.diag(covariance), np.finfo(float).tiny)
-        decay = np.exp(-interval / self.correlation_time)
-        return np.asarray(decay * np.minimum(self.slow, variances) / variances)
+        kept = _likeness(interval / self.correlation_time)
+        return np.asarray(kept * np.minimum(self.slow, variances) / variances)
+
+    def mean_over(self, interval: float, covariance: Array) -> Array:
+        """Return the covariance (3, 3) of an error's mean over ``interval`` [s].
+
+        ``covariance`` (3, 3) is the error's at the beginning; it returns to ``slow`` meanwhile.
+        """
+        share = interval / self.correlation_time
+        if share < SHORT:
+            return covariance
+        first = -math.expm1(-share) / share
+        grown = max(2.0 * (1.0 - first) / share - first**2, 0.0)
+        return first**2 * covariance + np.diag(grown * self.slow)
 
 
 def persistence_of(config: DeadReckoning) -> Persistence:
     """Return the persistence that dead reckoning's parameters state."""
     deviations = np.array([config.surge_noise, config.sway_noise, config.gyro_bias])
     return Persistence(config.velocity_correlation_time, deviations**2)
+
+
+def _likeness(share: float) -> float:
+    """Return the correlation of a Gauss-Markov process' means over two turns, one after another.
+
+    A turn lasts ``share`` of the correlation time.
+    """
+    if share < SHORT:
+        return 1.0 - 2.0 * share / 3.0
+    lost = -math.expm1(-share)
+    return lost**2 / (2.0 * (share - lost))
 
 
 class MotionFeedback:
@@ -52,15 +83,53 @@ class MotionFeedback:
         self.offset = np.zeros(3)
         self.covariance = np.zeros((3, 3))
         self._predicted: tuple[Array, Array] | None = None
+        self._stationary = np.zeros((3, 3))
+        self._interval = 0.0
+        self._shared = np.zeros((3, 3))
 
     def predict(self, interval: float, stationary: Array) -> None:
         """Let ``interval`` [s] pass; ``stationary`` (3, 3) is the error's a-priori covariance."""
         kept = np.zeros(3)
         if self._predicted:
             kept = self._persistence.over(interval, stationary)
+            before = self._predicted[1] + np.finfo(float).tiny * np.eye(3)
+            still_open = np.linalg.solve(before, self.covariance)
+            shared = self._shared @ still_open + self._interval * self.covariance
+            self._shared = shared * kept
         self.offset = kept * self.offset
         self.covariance = stationary + np.outer(kept, kept) * (self.covariance - stationary)
         self._predicted = self.offset, self.covariance
+        self._stationary, self._interval = stationary, interval
+
+    def ahead(self) -> TwistError:
+        """Return the error to be expected in the turn after the one that was predicted."""
+        kept = self._kept_ahead()
+        grown = self._stationary + np.outer(kept, kept) * (self.covariance - self._stationary)
+        return TwistError(kept * self.offset, grown)
+
+    def followed(self) -> Array:
+        """Return the share (3,) of what the last update showed that goes into the next turn."""
+        if self._predicted is None:
+            return np.zeros(3)
+        before = np.maximum(np.diag(self._predicted[1]), np.finfo(float).tiny)
+        return self._kept_ahead() * (1.0 - np.diag(self.covariance) / before)
+
+    def coherent(self) -> Array:
+        """Return the predicted covariance (3, 3), what it shares with the turns before added.
+
+        While the sonar shows nothing, the same error acts turn after turn. Edges of a graph are
+        independent; that of a turn has to bring along what it has in common with those before.
+        """
+        if self._interval <= 0.0:
+            return self.covariance
+        together = self.covariance + (self._shared + self._shared.T) / self._interval
+        values, vectors = np.linalg.eigh(together)
+        return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+
+    def _kept_ahead(self) -> Array:
+        if not self._stationary.any():
+            return np.zeros(3)
+        return self._persistence.over(self._interval, self._stationary)
 
     def update(self, offset: Array, covariance: Array) -> None:
         """Take in a twist error (3,) that a pair of keyframes showed, with its covariance.

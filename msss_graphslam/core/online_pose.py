@@ -8,6 +8,7 @@ import numpy as np
 
 from msss_graphslam.core.compounding import between, compose_jacobians, wrap_angle
 from msss_graphslam.core.history import DeadReckoningHistory
+from msss_graphslam.core.motion_feedback import Persistence
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
 
 __all__ = ["OnlinePose"]
@@ -28,8 +29,12 @@ class OnlinePose:
     Runs at the rate of the beams, so that planar vectors are complex numbers here: x + i y.
     """
 
-    def __init__(self, first: Odometry) -> None:
-        """Start where dead reckoning starts: ``map`` and ``odom`` are the same until anchored."""
+    def __init__(self, first: Odometry, persistence: Persistence) -> None:
+        """Start where dead reckoning starts: ``map`` and ``odom`` are the same until anchored.
+
+        ``persistence`` is that of dead reckoning's twist error.
+        """
+        self._persistence = persistence
         self._recent = DeadReckoningHistory()
         self._recent.append(first)
         self._correction: MapCorrection | None = None
@@ -76,7 +81,8 @@ class OnlinePose:
         elapsed = max((odometry.stamp_ns - correction.stamp_ns) * 1e-9, 0.0)
         now = np.array([self._position.real, self._position.imag, self._yaw])
         motion = between(correction.pose, now)
-        drift = _drift_covariance(motion, elapsed, correction.twist_error.covariance)
+        twist = self._persistence.mean_over(elapsed, correction.twist_error.covariance)
+        drift = _drift_covariance(motion, elapsed, twist)
         by_first, by_second = compose_jacobians(correction.pose, motion)
         planar = by_first @ correction.covariance @ by_first.T + by_second @ drift @ by_second.T
         spread[_PLANAR] = 0.0

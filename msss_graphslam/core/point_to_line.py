@@ -9,6 +9,8 @@ A. Censi, An ICP variant using a point-to-line metric, ICRA 2008; robust weights
 # has no twin in the next one; pairing points drags the result towards no motion, pairing a point
 # with the line through its neighbours does not.
 
+import math
+
 import numpy as np
 
 from msss_graphslam.config.groups import Matching
@@ -17,8 +19,10 @@ from msss_graphslam.core.compounding import (
     inverse_jacobian,
     rotation,
     wrap,
+    wrap_angle,
 )
 from msss_graphslam.core.line_features import LineFeatures
+from msss_graphslam.core.match_covariance import WIDEST, MatchedPairs, match_covariance
 from msss_graphslam.core.match_result import MatchResult
 from msss_graphslam.core.types import Array
 
@@ -32,9 +36,6 @@ CAUCHY = 2.0
 
 STEP, STEP_ANGLE = 5e-4, 1e-4
 """An iteration that moves less than this has converged [m], [rad]."""
-
-WIDEST = 1e4
-"""Variance [m^2, rad^2] that stands for a direction of which the scans say nothing."""
 
 
 def match_lines(
@@ -61,7 +62,7 @@ def match_lines(
     difference = backward_pose - forward.pose
     difference[2] = wrap(difference[2])
     pose = forward.pose + 0.5 * difference
-    covariance = 0.5 * (forward.covariance() + backward.covariance_of_inverse())
+    covariance = _covariance(forward, backward)
     observed = _observed(difference, covariance, config)
     figures = {
         "overlap": min(forward.overlap, backward.overlap),
@@ -85,22 +86,24 @@ class _Alignment:
         config: Matching,
     ) -> None:
         self._lines = lines
+        self._supported = (2.0 * lines.reach) ** 2
         self._points = moving.points[moving.flat]
         self._normals = moving.normals[moving.flat]
         self._covariances = moving.covariances[moving.flat]
         self._initial = initial
-        self._prior = np.linalg.inv(initial_covariance)
+        self._prior = np.asarray(np.linalg.inv(initial_covariance))
         self.pose = np.array(initial, dtype=float)
         self.overlap = 0.0
         self.scale = 1.0
-        self._information = np.zeros((3, 3))
+        self._slips = moving.slips[moving.flat]
+        self._last: tuple[Array, Array, Array] | None = None
         reach = 3.0 * float(np.sqrt(np.linalg.eigvalsh(initial_covariance[:2, :2])[-1]))
         gate = max(config.pairing_distance, reach)
         for _ in range(config.iterations):
             step = self._iterate(gate)
             narrow = gate <= config.pairing_distance
             gate = max(config.pairing_distance, 0.7 * gate)
-            if narrow and np.hypot(*step[:2]) < STEP and abs(step[2]) < STEP_ANGLE:
+            if narrow and math.hypot(*step[:2]) < STEP and abs(step[2]) < STEP_ANGLE:
                 break
 
     def _iterate(self, gate: float) -> Array:
@@ -110,23 +113,27 @@ class _Alignment:
         points = levers + self.pose[:2]
         found = lines.tree.query(points)
         distances, nearest = np.asarray(found[0]), np.asarray(found[1])
-        normals = lines.normals[nearest]
-        offsets = points - lines.centres[nearest]
+        normals = lines.normals.take(nearest, axis=0)
+        offsets = points - lines.centres.take(nearest, axis=0)
         residuals = _dot(normals, offsets)
         paired = np.flatnonzero(
             (distances < gate)
-            & lines.flat[nearest]
+            & lines.flat.take(nearest)
             & (_dot(normals, self._normals @ turn.T) > SAME_SIDE)
-            & (_dot(offsets, offsets) - residuals**2 < (2.0 * lines.reach[nearest]) ** 2)
+            & (_dot(offsets, offsets) - residuals**2 < self._supported.take(nearest))
         )
         self.overlap = len(paired) / max(len(self._points), 1)
         if len(paired) < 3:
             return np.zeros(3)
-        normals = normals[paired]
+        normals = normals.take(paired, axis=0)
         along = normals @ turn
-        spread = np.einsum("ni,nij,nj->n", along, self._covariances[paired], along)
+        covariances = self._covariances.take(paired, axis=0)
+        spread = np.einsum("ni,nij,nj->n", along, covariances, along)
         deviations = np.sqrt(spread + lines.variances[nearest[paired]])
-        return self._solve(normals, levers[paired], residuals[paired], deviations)
+        self._paired, self._on, self._deviations = paired, nearest[paired], deviations
+        return self._solve(
+            normals, levers.take(paired, axis=0), residuals.take(paired), deviations
+        )
 
     def _solve(self, normals: Array, levers: Array, residuals: Array, deviations: Array) -> Array:
         """One robust Gauss-Newton step, with the initial guess as a weak prior."""
@@ -134,29 +141,43 @@ class _Alignment:
         self.scale = 1.4826 * _median(np.abs(normalised))
         width = CAUCHY * max(self.scale, 0.1)
         weights = 1.0 / (1.0 + (normalised / width) ** 2)
-        jacobian = np.empty((len(normals), 3))
-        jacobian[:, :2] = normals
-        jacobian[:, 2] = normals[:, 1] * levers[:, 0] - normals[:, 0] * levers[:, 1]
-        jacobian /= deviations[:, None]
+        jacobian = _by_pose(normals, levers) / deviations[:, None]
         weighted = jacobian.T * weights
-        self._information = weighted @ jacobian
+        self._last = jacobian, normalised, weights
         error = self.pose - self._initial
-        error[2] = wrap(error[2])
+        error[2] = wrap_angle(error[2])
         gradient = weighted @ normalised + self._prior @ error
-        step = -np.linalg.solve(self._information + self._prior, gradient)
+        step = -np.linalg.solve(weighted @ jacobian + self._prior, gradient)
         self.pose = self.pose + step
-        self.pose[2] = wrap(self.pose[2])
+        self.pose[2] = wrap_angle(self.pose[2])
         return np.asarray(step)
 
-    def covariance(self) -> Array:
-        """Return the covariance (3, 3) of the pose from the pairs alone."""
-        information = self._information / max(self.scale, 1.0) ** 2
-        return np.asarray(np.linalg.inv(information + np.eye(3) / WIDEST))
+    def pairs(self) -> MatchedPairs | None:
+        """Return the last step's pairs, None where there were too few."""
+        if self._last is None:
+            return None
+        jacobian, residuals, weights = self._last
+        turn, normals = rotation(self.pose[2]), self._lines.normals[self._on]
+        own = self._normals[self._paired] @ turn.T
+        twin = _by_pose(own, self._points[self._paired] @ turn.T) / self._deviations[:, None]
+        moved = np.einsum("ni,nij->nj", normals @ turn, self._slips[self._paired])
+        slid = np.einsum("ni,nij->nj", normals, self._lines.slips[self._on])
+        slips = np.hstack([moved, -slid]) / self._deviations[:, None]
+        return MatchedPairs(jacobian, twin, residuals, weights, slips, self._prior)
 
-    def covariance_of_inverse(self) -> Array:
-        """Return the covariance (3, 3) of the inverted pose."""
-        jacobian = inverse_jacobian(self.pose)
-        return np.asarray(jacobian @ self.covariance() @ jacobian.T)
+
+def _covariance(forward: _Alignment, backward: _Alignment) -> Array:
+    """Return the covariance (3, 3) of the mean of both ways."""
+    there, back = forward.pairs(), backward.pairs()
+    if there is None or back is None:
+        return WIDEST * np.eye(3)
+    return match_covariance(there, back, inverse_jacobian(backward.pose))
+
+
+def _by_pose(normals: Array, levers: Array) -> Array:
+    """Return the derivatives (n, 3) of distances along normals by the pose."""
+    across = normals[:, 1] * levers[:, 0] - normals[:, 0] * levers[:, 1]
+    return np.column_stack([normals, across])
 
 
 def _dot(first: Array, second: Array) -> Array:

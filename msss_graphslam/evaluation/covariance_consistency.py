@@ -9,7 +9,7 @@ from scipy.special import chdtri
 
 from msss_graphslam.core.types import Array
 
-__all__ = ["Consistency", "consistency"]
+__all__ = ["Consistency", "StepConsistency", "consistency", "step_consistency"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,3 +40,46 @@ def consistency(errors: Array, covariances: Array) -> Consistency:
     low, high = chdtri(degrees, [0.975, 0.025]) / degrees
     mean = float(np.sum(errors * solved) / degrees)
     return Consistency(mean, float(low), float(high), samples)
+
+
+@dataclass(frozen=True, slots=True)
+class StepConsistency:
+    """NEES of many missions, step by step, each step's mean against the band of honest ones.
+
+    ``mean`` over all, the 95 % band from ``low`` to ``high`` for a step, and the shares of the
+    steps in it: ``inside``, ``above`` (errors larger than stated) and ``below``.
+    """
+
+    mean: float
+    low: float
+    high: float
+    inside: float
+    above: float
+    below: float
+    missions: int
+
+
+def step_consistency(errors: Array, covariances: Array) -> StepConsistency:
+    """Return the consistency of errors (m, s, d) under covariances (m, s, d, d).
+
+    ``m`` missions that are independent of each other, each looked at in the same ``s`` steps. The
+    errors within one mission hang together, so that the band is that of ``m`` samples, however
+    many steps there are. Raises ValueError where there is nothing to compare.
+    """
+    missions, steps, dimension = errors.shape
+    if not missions or not steps:
+        raise ValueError("no mission or no step to compare errors of")
+    solved = np.linalg.solve(covariances, errors[..., None])[..., 0]
+    means = np.sum(errors * solved, axis=(0, 2)) / (missions * dimension)
+    degrees = missions * dimension
+    low, high = chdtri(degrees, [0.975, 0.025]) / degrees
+    above, below = float(np.mean(means > high)), float(np.mean(means < low))
+    return StepConsistency(
+        float(means.mean()),
+        float(low),
+        float(high),
+        1.0 - above - below,
+        above,
+        below,
+        missions,
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from msss_graphslam.evaluation.assessment import Assessment
 
-__all__ = ["DPI", "Picture", "comparison_pictures", "run_pictures"]
+__all__ = ["DPI", "Picture", "comparison_pictures", "picture_count", "run_picture", "run_pictures"]
 
 DPI = 150
 
@@ -29,10 +29,25 @@ class Picture:
 
 def run_pictures(assessment: Assessment) -> list[Picture]:
     """Draw the figures of one run."""
-    from msss_graphslam.evaluation.figures.plates import png, run_plates
+    drawn = [run_picture(assessment, number) for number in range(picture_count())]
+    return [picture for picture in drawn if picture is not None]
 
-    plates = run_plates(assessment)
-    return [Picture(plate.name, plate.title, plate.caption, png(plate)) for plate in plates]
+
+def picture_count() -> int:
+    """Return how many figures of one run there are at most."""
+    from msss_graphslam.evaluation.figures.plates import PLATES
+
+    return PLATES
+
+
+def run_picture(assessment: Assessment, number: int) -> Picture | None:
+    """Draw one of the figures of one run, None where the recording has no data for it."""
+    from msss_graphslam.evaluation.figures.plates import png, run_plate
+
+    plate = run_plate(assessment, number)
+    if plate is None:
+        return None
+    return Picture(plate.name, plate.title, plate.caption, png(plate))
 
 
 def comparison_pictures(assessments: Sequence[Assessment]) -> list[Picture]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from msss_graphslam.core.compounding import between, compose, wrap
+from msss_graphslam.core.motion_feedback import Persistence
 from msss_graphslam.core.online_pose import OnlinePose, _drift_covariance
 from msss_graphslam.core.scan_generation import motion_covariances
 from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
@@ -13,6 +14,8 @@ from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
 PERIOD_NS = 40_000_000
 MAP_POSE = np.array([5.0, -3.0, 3.0])
 OFFSET = np.array([0.03, -0.01, 0.02])
+STEADY = Persistence(1e9, np.zeros(3))
+"""A twist error that stays."""
 
 
 def odometry(number: int, planar: Array, twist: Array | None = None) -> Odometry:
@@ -39,7 +42,7 @@ def assert_same(pose: Array, planar: Array, tolerance: float = 1e-12) -> None:
 
 def test_is_dead_reckoning_before_any_correction() -> None:
     entries = course()
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     for entry in entries:
         pose = online.at(entry, entry.stamp_ns)
         assert_same(pose, entry.planar)
@@ -49,7 +52,7 @@ def test_is_dead_reckoning_before_any_correction() -> None:
 
 def test_goes_on_from_the_correction_by_dead_reckoning() -> None:
     entries = course()
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.anchor(MAP_POSE, entries[10].planar, entries[10].stamp_ns, np.zeros(3))
     for entry in entries[10:]:
         expected = compose(MAP_POSE, between(entries[10].planar, entry.planar))
@@ -58,7 +61,7 @@ def test_goes_on_from_the_correction_by_dead_reckoning() -> None:
 
 def test_equals_the_composition_with_the_twist_error_taken_out() -> None:
     entries = course()
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.anchor(MAP_POSE, entries[0].planar, 0, OFFSET)
     expected = MAP_POSE
     for before, after in pairwise(entries):
@@ -69,7 +72,7 @@ def test_equals_the_composition_with_the_twist_error_taken_out() -> None:
 
 def test_asking_twice_changes_nothing() -> None:
     entries = course(5)
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.anchor(MAP_POSE, entries[0].planar, 0, OFFSET)
     first = online.at(entries[4], entries[4].stamp_ns)
     np.testing.assert_array_equal(online.at(entries[4], entries[4].stamp_ns), first)
@@ -77,7 +80,7 @@ def test_asking_twice_changes_nothing() -> None:
 
 def test_an_anchor_at_its_own_pose_makes_no_step() -> None:
     entries = course(20)
-    plain, anchored = OnlinePose(entries[0]), OnlinePose(entries[0])
+    plain, anchored = OnlinePose(entries[0], STEADY), OnlinePose(entries[0], STEADY)
     for online in (plain, anchored):
         online.anchor(MAP_POSE, entries[0].planar, 0, OFFSET)
         for entry in entries[:10]:
@@ -90,7 +93,7 @@ def test_an_anchor_at_its_own_pose_makes_no_step() -> None:
 def test_looks_ahead_by_the_twist() -> None:
     twist = np.array([0.1, 0.02, 0.0, 0.0, 0.0, 0.05])
     entry = odometry(0, np.array([0.0, 0.0, 0.5 * np.pi]), twist)
-    online = OnlinePose(entry)
+    online = OnlinePose(entry, STEADY)
     online.anchor(entry.planar, entry.planar, 0, OFFSET)
     ahead = online.at(entry, 100_000_000)
     speed = twist[[0, 1, 5]] + OFFSET
@@ -99,7 +102,7 @@ def test_looks_ahead_by_the_twist() -> None:
 
 def test_looking_ahead_leaves_no_trace() -> None:
     entries = course(3)
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.at(entries[0], entries[2].stamp_ns)
     assert_same(online.at(entries[1], entries[1].stamp_ns), entries[1].planar)
 
@@ -111,7 +114,7 @@ def test_the_motion_is_continuous_between_corrections() -> None:
     for number in range(50):
         entries.append(odometry(number, pose, twist))
         pose = compose(pose, np.array([0.004, 0.0, 0.008]))
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.anchor(MAP_POSE, entries[0].planar, 0, np.zeros(3))
     poses = np.array(
         [
@@ -128,7 +131,7 @@ def test_the_motion_is_continuous_between_corrections() -> None:
 def test_the_odometry_is_not_changed() -> None:
     entry = course(1)[0]
     before = entry.pose.copy()
-    online = OnlinePose(entry)
+    online = OnlinePose(entry, STEADY)
     online.anchor(MAP_POSE, entry.planar, 0, OFFSET)
     online.at(entry, 10)
     np.testing.assert_array_equal(entry.pose, before)
@@ -143,7 +146,7 @@ def correction(stamp_ns: int, offset: Array = OFFSET) -> MapCorrection:
 
 
 def followed(entries: list[Odometry]) -> OnlinePose:
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     for entry in entries:
         online.at(entry, entry.stamp_ns)
     return online
@@ -163,7 +166,7 @@ def test_a_correction_of_the_past_is_the_same_as_one_in_time(late: int) -> None:
 
 def test_a_correction_at_an_odometry_is_an_anchor() -> None:
     entries = course()
-    online, anchored = followed(entries[:31]), OnlinePose(entries[0])
+    online, anchored = followed(entries[:31]), OnlinePose(entries[0], STEADY)
     online.correct(correction(entries[30].stamp_ns))
     anchored.anchor(MAP_POSE, entries[30].planar, entries[30].stamp_ns, OFFSET)
     for entry in entries[30:]:
@@ -207,7 +210,7 @@ def test_what_is_remembered_is_caught_up_with_as_what_was_asked() -> None:
 def test_a_correction_may_come_before_anything_was_asked() -> None:
     """As after a restart: where dead reckoning is now, the map says it was then."""
     entries = course()
-    online = OnlinePose(entries[0])
+    online = OnlinePose(entries[0], STEADY)
     online.correct(correction(entries[0].stamp_ns, np.zeros(3)))
     expected = compose(MAP_POSE, between(entries[0].planar, entries[5].planar))
     assert_same(online.at(entries[5], entries[5].stamp_ns), expected)
@@ -232,7 +235,7 @@ def driving(count: int = 100, rate: float = 0.0) -> list[Odometry]:
 
 def test_the_covariance_is_dead_reckoning_s_before_any_correction() -> None:
     entry = course(1)[0]
-    online = OnlinePose(entry)
+    online = OnlinePose(entry, STEADY)
     np.testing.assert_array_equal(online.covariance(entry), entry.covariance)
     assert online.covariance(entry) is not entry.covariance
 
@@ -267,7 +270,7 @@ def test_the_covariance_is_that_of_samples() -> None:
     online.at(entries[-1], entries[-1].stamp_ns)
     rng, found = np.random.default_rng(0), []
     for _ in range(400):
-        sample = OnlinePose(entries[0])
+        sample = OnlinePose(entries[0], STEADY)
         pose = rng.multivariate_normal(MAP_POSE, SPREAD)
         twist = rng.multivariate_normal(np.zeros(3), TWIST_SPREAD)
         sample.anchor(pose, entries[0].planar, 0, twist)
@@ -278,6 +281,25 @@ def test_the_covariance_is_that_of_samples() -> None:
     ratios = np.linalg.eigvals(np.linalg.solve(planar(online.covariance(entries[-1])), spread))
     assert (ratios.real > 0.7).all()
     assert (ratios.real < 1.3).all()
+
+
+def test_an_error_that_changes_takes_the_pose_farther() -> None:
+    """An oracle: straight on at a speed whose error is a Gauss-Markov process, known at first."""
+    lasting, seconds = 50.0, 40
+    rng, decay = np.random.default_rng(1), np.exp(-1.0 / lasting)
+    error, way = np.zeros(4000), np.zeros(4000)
+    for noise in rng.normal(size=(seconds, 4000)):
+        way += error
+        error = decay * error + 0.03 * np.sqrt(1.0 - decay**2) * noise
+    entries = [odometry(25 * second, np.array([0.1 * second, 0.0, 0.0])) for second in range(41)]
+    online = OnlinePose(entries[0], Persistence(lasting, np.array([0.03**2, 0.0, 0.0])))
+    known = TwistError(np.zeros(3), 1e-12 * np.eye(3))
+    online.correct(MapCorrection(0, np.zeros(3), 1e-12 * np.eye(3), known))
+    for entry in entries:
+        online.at(entry, entry.stamp_ns)
+    stated = online.covariance(entries[-1])
+    assert stated[0, 0] == pytest.approx(np.var(way), rel=0.1)
+    assert stated[1, 1] < 1e-6
 
 
 def test_depth_and_tilt_keep_dead_reckoning_s_covariance() -> None:

@@ -3,9 +3,14 @@
 """Which figures a report has, and how they become PNG files."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.image import imsave
+from numpy.typing import NDArray
 
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.figures.closures import closures
@@ -20,27 +25,38 @@ from msss_graphslam.evaluation.figures.trajectories import trajectories
 from msss_graphslam.evaluation.figures.uncertainty import uncertainty
 from msss_graphslam.evaluation.pictures import DPI
 
-__all__ = ["comparison_plates", "png", "run_plates"]
+__all__ = ["PLATES", "comparison_plates", "png", "run_plate", "run_plates"]
 
-_NO_VERSION = {"Software": None}
+_NO_VERSION: dict[str, Any] = {"Software": None}
+_MARGIN = 0.1
+
+_RUN: tuple[Callable[[Assessment], Plate | None], ...] = (
+    lambda run: trajectories([run]),
+    lambda run: maps([run]),
+    occupancy,
+    lambda run: errors_over_time([run]) or corrections([run]),
+    one_scan,
+    echo_image,
+    network,
+    closures,
+    uncertainty,
+    timing,
+)
+
+PLATES = len(_RUN)
+"""How many figures of one run there are at most."""
 
 
 def run_plates(assessment: Assessment) -> list[Plate]:
     """Draw the figures of one run; those for which the recording has no data are left out."""
-    with mpl.rc_context(RC):
-        plates = [
-            trajectories([assessment]),
-            maps([assessment]),
-            occupancy(assessment),
-            errors_over_time([assessment]) or corrections([assessment]),
-            one_scan(assessment),
-            echo_image(assessment),
-            network(assessment),
-            closures(assessment),
-            uncertainty(assessment),
-            timing(assessment),
-        ]
+    plates = [run_plate(assessment, number) for number in range(PLATES)]
     return [plate for plate in plates if plate is not None]
+
+
+def run_plate(assessment: Assessment, number: int) -> Plate | None:
+    """Draw one of the figures of one run, None where the recording has no data for it."""
+    with mpl.rc_context(RC):
+        return _RUN[number](assessment)
 
 
 def comparison_plates(assessments: Sequence[Assessment]) -> list[Plate]:
@@ -55,9 +71,26 @@ def comparison_plates(assessments: Sequence[Assessment]) -> list[Plate]:
 
 def png(plate: Plate) -> bytes:
     """Return the figure as a PNG file; equal figures make equal bytes."""
+    # Matplotlib's own tight box lays a figure out and goes through all of it once more.
     image = io.BytesIO()
     with mpl.rc_context(RC):
-        plate.figure.savefig(
-            image, format="png", dpi=DPI, bbox_inches="tight", metadata=_NO_VERSION
-        )
+        plate.figure.set_dpi(DPI)
+        canvas = FigureCanvasAgg(plate.figure)
+        canvas.draw()  # type: ignore[no-untyped-call]
+        drawn = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+        pixels = _cropped(drawn, round(_MARGIN * DPI))
+        imsave(image, pixels, format="png", dpi=DPI, metadata=_NO_VERSION)
     return image.getvalue()
+
+
+def _cropped(pixels: NDArray[np.uint8], margin: int) -> NDArray[np.uint8]:
+    """Return the pixels (h, w, 4) within the background, with as much margin on every side."""
+    whole = pixels.view(np.uint32)[..., 0]
+    background = whole[0, 0]
+    drawn = whole != background
+    rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
+    if not len(rows):
+        return pixels
+    inner = whole[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    outer = np.pad(inner, margin, constant_values=background)
+    return outer[..., None].view(np.uint8)
