@@ -45,6 +45,7 @@ def associate(
     current_descriptor: Array,
     config: Association,
     most: int | None = None,
+    numbers: Sequence[int] | None = None,
 ) -> list[Candidate]:
     """Return the keyframes inside the Mahalanobis gate, in order; Algorithm 3.
 
@@ -65,19 +66,23 @@ def associate(
         The thresholds Mt and St; both distances must lie below them.
     most
         How many to accept at most, nearest first; None for all, as the paper does.
+    numbers
+        The n keyframes' numbers, by which candidates are known; counted from 0 where None.
     """
+    names = range(len(poses)) if numbers is None else numbers
     distances = squared_mahalanobis(poses[:-1], covariances[:-1], current_pose, current_covariance)
     inside = np.flatnonzero(distances < config.mahalanobis_threshold)
     candidates: list[Candidate] = []
     # Deviation: with ``most`` the nearest are taken, and of neighbours in time one: they say much
     # the same, and the work for a scan stays the same however many have been there before.
     order = inside if most is None else inside[np.argsort(distances[inside], kind="stable")]
-    for index in map(int, order):
+    for place in map(int, order):
+        index = names[place]
         if most is not None and not _is_wanted(index, candidates, most):
             continue
-        shape = shape_distance(descriptors[index], current_descriptor)
+        shape = shape_distance(descriptors[place], current_descriptor)
         refusal = "" if shape < config.shape_threshold else "shape_differs"
-        candidates.append(Candidate(index, float(distances[index]), shape, refusal))
+        candidates.append(Candidate(index, float(distances[place]), shape, refusal))
     return sorted(candidates, key=lambda candidate: candidate.index)
 
 

@@ -24,7 +24,8 @@ class Node:
 
     ``scan`` in its present layout and ``prepared`` for the matcher, ``first_scan`` as dead
     reckoning laid it out, its ``descriptor``, and ``covariance`` (3, 3) of its pose when it was
-    added, which later poses only make smaller.
+    added, which later poses only make smaller. ``is_place``: whether later scans are matched with
+    it. Of the scans only stamp and odometry are left when two others have followed.
     """
 
     scan: Scan
@@ -32,6 +33,7 @@ class Node:
     first_scan: Scan
     descriptor: Array
     covariance: Array
+    is_place: bool = True
 
 
 def odometry_constraint(

@@ -5,8 +5,8 @@
 from contextlib import nullcontext
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.guarded_back_end import GuardedBackEnd
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import Constraint, Scan, Stage
 
@@ -21,7 +21,12 @@ class GraphSlam:
     ) -> None:
         self._stage = stage
         self.front_end = FrontEnd(configuration, recipe, stage)
-        self._back_end = BackEnd(configuration.back_end)
+        self._back_end = GuardedBackEnd(configuration.back_end, guards=recipe.goes_beyond)
+
+    @property
+    def constraints(self) -> list[Constraint]:
+        """All constraints tried, in order, refused as they stand now."""
+        return self._back_end.tried
 
     def add_scan(self, scan: Scan) -> list[Constraint]:
         """Algorithm 1, lines 8 to 22, for one scan; return the constraints tried."""
@@ -29,4 +34,4 @@ class GraphSlam:
         with self._stage("back_end"):
             answer = self._back_end.take(self.front_end.poses[-1], tried)  # line 12
         self.front_end.correct(*answer)  # lines 13 and 14
-        return tried
+        return self.constraints[len(self.constraints) - len(tried) :]

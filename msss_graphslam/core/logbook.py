@@ -8,9 +8,11 @@ from contextlib import nullcontext
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.bare_scans import LaidOut, bare
 from msss_graphslam.core.beam_log import BeamLog
 from msss_graphslam.core.joint_pairs import first_reach, pairs_of
 from msss_graphslam.core.joint_smoothing import Reach, Smoothed, smooth
+from msss_graphslam.core.matchers import ScanMatcher
 from msss_graphslam.core.motion_feedback import persistence_of
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.refinement import refine, whole_graph
@@ -51,7 +53,7 @@ class Logbook:
         """Note the beams of a scan, and the scan if it is a keyframe's."""
         self._beams.add_scan(scan)
         if scan.usable:
-            self.scans.append(scan)
+            self.scans.append(bare(scan))
 
     def add_online(self, stamp_ns: int, pose: Array) -> None:
         """Note the pose (6,) that a subscriber had at ``stamp_ns``."""
@@ -59,8 +61,8 @@ class Logbook:
 
     def keyframe_scans(self) -> list[Scan]:
         """Return the keyframes' scans, made anew from the trajectory as it stands."""
-        scans = self.scans[: len(self.poses)]
-        return corrected_scans(scans, self.poses, self._recipe.solver, self._learned)
+        solver = self._recipe.solver
+        return corrected_scans(self._keyframes_own(), self.poses, solver, self._learned)
 
     def finish(self, progress: Callable[[float], None] = lambda _: None) -> Estimate:
         """Refine the graph if the recipe says so, and return everything."""
@@ -74,9 +76,14 @@ class Logbook:
             online=self._beams.online,
             dead_reckoning=self._beams.dead_reckoning,
             keyframes=keyframes,
-            first_scans=tuple(self.scans[: len(self.poses)]),
+            first_scans=LaidOut(self.scans[: len(self.poses)]),
             constraints=tuple(self.constraints),
         )
+
+    def _keyframes_own(self) -> list[Scan]:
+        """Return the keyframes' scans; the last, which none follows to correct it, laid out."""
+        scans = self.scans[: len(self.poses)]
+        return [*scans[:-1], *LaidOut(scans[-1:])]
 
     @property
     def _learned(self) -> TwistError | None:
@@ -89,20 +96,23 @@ class Logbook:
             back_end = whole_graph(self.poses, self.constraints, config.back_end)
             return [back_end.covariance(number) for number in range(len(self.poses))]
         with self._stage("refinement"):
-            refined = refine(
-                self.scans[: len(self.poses)],
-                self.poses,
-                self.constraints,
-                self._learned,
-                matcher(config.matching),
-                config.back_end,
-                lambda share: progress(0.5 * share),
-            )
-            self.poses, self.constraints = refined.poses, refined.constraints
+            self._refine(matcher(config.matching), lambda share: progress(0.5 * share))
             smoothed = self._smooth(lambda share: progress(0.5 + 0.5 * share))
         self.poses = smoothed.poses
         self.twist_error = TwistError(smoothed.twist, smoothed.twist_covariance)
         return list(smoothed.covariances)
+
+    def _refine(self, matcher: ScanMatcher, progress: Callable[[float], None]) -> None:
+        refined = refine(
+            self._keyframes_own(),
+            self.poses,
+            self.constraints,
+            self._learned,
+            matcher,
+            self._configuration.back_end,
+            progress,
+        )
+        self.poses, self.constraints = refined.poses, refined.constraints
 
     def _smooth(self, progress: Callable[[float], None]) -> Smoothed:
         config = self._configuration

@@ -304,3 +304,46 @@ def test_what_was_refused_is_not_taken() -> None:
     poses, _ = back_end.take(START, [wrong, accepted])
     assert_same_poses(poses, np.vstack([START, compose(START, relative)]), 1e-9)
     assert back_end.constraints == [accepted]
+
+
+def test_matches_of_one_scan_share_its_weight() -> None:
+    """Three matches with the scan's own error in common say no more than one of them."""
+    step, spread = np.array([1.0, 0.1, 0.2]), np.diag([1e-2, 2e-2, 1e-3])
+    found = []
+    for count in (1, 3):
+        back_end = BackEnd(LEAST_SQUARES, divides=True)
+        back_end.add_keyframe(START)
+        back_end.update([])
+        for number in range(3):
+            back_end.update([edge(number, number + 1, np.zeros(3), 1e-9 * np.eye(3))])
+        back_end.update([loop(number, 4, step, spread) for number in range(count)])
+        found.append(back_end.covariance(4))
+        assert_same_poses(back_end.poses()[4:], compose(START, step)[None], 1e-3)
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-3, atol=1e-7)
+
+
+def test_odometry_keeps_its_own_weight_beside_matches() -> None:
+    step, spread = np.array([1.0, 0.1, 0.2]), np.diag([1e-2, 2e-2, 1e-3])
+    edges = [edge(0, 1, step, spread), loop(0, 1, step, spread)]
+    found = []
+    for new in (edges, edges[1:]):
+        back_end = BackEnd(LEAST_SQUARES, divides=True)
+        back_end.add_keyframe(START)
+        back_end.update([])
+        back_end.update(new)
+        found.append(back_end.covariance(1))
+    np.testing.assert_allclose(2.0 * found[0], found[1], rtol=1e-3, atol=1e-9)
+
+
+def test_a_rebuilt_smoother_has_the_same_shares() -> None:
+    _, steps = ring(3)
+    back_end = BackEnd(LEAST_SQUARES, divides=True)
+    back_end.add_keyframe(START)
+    back_end.update([])
+    for new in steps:
+        back_end.update(new)
+    before = back_end.poses(), back_end.covariance(NODES - 1)
+    back_end._rebuild()
+    back_end.update([])
+    np.testing.assert_allclose(back_end.poses(), before[0], atol=5e-3)
+    np.testing.assert_allclose(back_end.covariance(NODES - 1), before[1], rtol=0.1, atol=1e-6)

@@ -84,3 +84,9 @@ class BackEnd:
         "Cauchy width of loop closures in standard deviations, 0 for least squares",
         minimum=0.0,
     )
+    contradiction: float = parameter(
+        16.3,
+        "largest squared Mahalanobis distance of a loop closure from the way between its"
+        " keyframes and from the graph, 0 takes every closure (full only)",
+        minimum=0.0,
+    )
