@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses at every beam: dead reckoned, as published at the time, and corrected in the end."""
 
+from array import array
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -21,7 +22,8 @@ class BeamLog:
     def __init__(self) -> None:
         self._stamps: list[Stamps] = []
         self._reckoned: list[Array] = []
-        self._online: list[tuple[int, Array]] = []
+        self._online_stamps = array("q")
+        self._online_poses = array("d")
 
     def add_scan(self, scan: Scan) -> None:
         """Note the beams of a turn and their dead reckoning."""
@@ -30,13 +32,14 @@ class BeamLog:
 
     def add_online(self, stamp_ns: int, pose: Array) -> None:
         """Note the pose (6,) that a subscriber had at ``stamp_ns``."""
-        self._online.append((stamp_ns, pose))
+        self._online_stamps.append(stamp_ns)
+        self._online_poses.extend(pose.tolist())
 
     @property
     def online(self) -> Trajectory:
         """What a subscriber got at the time."""
-        stamps = np.array([stamp_ns for stamp_ns, _ in self._online], dtype=np.int64)
-        return Trajectory(stamps, np.array([pose for _, pose in self._online]).reshape(-1, 6))
+        stamps = np.array(self._online_stamps, dtype=np.int64)
+        return Trajectory(stamps, np.array(self._online_poses).reshape(-1, 6))
 
     @property
     def dead_reckoning(self) -> Trajectory:
@@ -54,7 +57,9 @@ class BeamLog:
         the last it goes on with ``twist_error`` (3,) taken out.
         """
         reckoned = self.dead_reckoning
-        stamps, planar = reckoned.stamps_ns, reckoned.planar.copy()
+        # One look at the planar part is a copy of it.
+        stamps, before = reckoned.stamps_ns, reckoned.planar
+        planar = before.copy()
         first_stamps = [scan.stamp_ns for scan in scans[: len(keyframe_poses)]]
         starts = np.searchsorted(stamps, np.array(first_stamps, dtype=np.int64))
         for number, (start, stop) in enumerate(pairwise(starts)):
@@ -62,17 +67,17 @@ class BeamLog:
             planar[start:stop] = compose(
                 keyframe_poses[number],
                 correct_motion(
-                    between(origin, reckoned.planar[start:stop]),
-                    between(origin, reckoned.planar[stop]),
+                    between(origin, before[start:stop]),
+                    between(origin, before[stop]),
                     between(keyframe_poses[number], keyframe_poses[number + 1]),
                     solver,
                 ).poses,
             )
         if len(starts):
             rest = slice(starts[-1], None)
-            motion = between(reckoned.planar[starts[-1]], reckoned.planar[rest])
+            motion = between(before[starts[-1]], before[rest])
             elapsed = (stamps[rest] - stamps[starts[-1]]) * 1e-9
             planar[rest] = compose(keyframe_poses[-1], offset_motion(motion, elapsed, twist_error))
-        poses = reckoned.poses.copy()
+        poses = reckoned.poses  # nobody else's
         poses[:, [0, 1, 5]] = planar
         return Trajectory(stamps, poses)

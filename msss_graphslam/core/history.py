@@ -5,12 +5,13 @@
 from bisect import bisect_right
 from collections import Counter
 from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from msss_graphslam.config.groups import Scanning
 from msss_graphslam.core.compounding import wrap, wrap_angle
-from msss_graphslam.core.types import Array, Odometry, Reading, Stamps
+from msss_graphslam.core.types import Array, Odometry, Stamps
 
 __all__ = ["DeadReckoningHistory", "Turn", "TurnDetector"]
 
@@ -82,22 +83,37 @@ class DeadReckoningHistory:
         del self._stamps[:keep]
 
 
+class Bearing(Protocol):
+    """What tells where the head pointed when, like a beam or its reading."""
+
+    @property
+    def stamp_ns(self) -> int:
+        """When."""
+
+    @property
+    def bearing(self) -> float:
+        """Where to [rad]."""
+
+
+Item = TypeVar("Item", bound=Bearing)
+
+
 @dataclass(slots=True)
-class Turn:
+class Turn(Generic[Item]):
     """RH: the readings of one turn or sweep.
 
     ``end_ns`` is the next one's first stamp, ``swept`` the angle [rad] between the first beam and
     the last, ``complete`` whether the head finished it, ``usable`` whether it makes a scan.
     """
 
-    readings: list[Reading]
+    readings: list[Item]
     end_ns: int
     swept: float
     complete: bool
     usable: bool = True
 
 
-class TurnDetector:
+class TurnDetector(Generic[Item]):
     """ScanDetermined: cuts the stream of readings into turns.
 
     A full turn of a continuous head, either way round, or one sweep of a sector.
@@ -107,12 +123,12 @@ class TurnDetector:
         self._gap_ns = round(config.gap * 1e9)
         self._part_turn = config.part_turn
         self._refused = refused
-        self._readings: list[Reading] = []
+        self._readings: list[Item] = []
         self._swept = 0.0
         self._direction = 0.0
         self._least_step = FULL_TURN  # a lost beam makes a step longer, never shorter
 
-    def add(self, reading: Reading) -> Turn | None:
+    def add(self, reading: Item) -> Turn[Item] | None:
         """Take in one reading; return the turn that it ends, of which it is not a part.
 
         A turn that is dropped is returned as not usable.
@@ -139,7 +155,7 @@ class TurnDetector:
         self._direction = step or self._direction
         return None
 
-    def finish(self) -> Turn | None:
+    def finish(self) -> Turn[Item] | None:
         """Return the turn in progress at the end of the recording; usable if it is long enough."""
         readings, self._readings = self._readings, []
         if not readings:
@@ -147,11 +163,11 @@ class TurnDetector:
         enough = self._swept >= self._part_turn
         return Turn(readings, readings[-1].stamp_ns, self._swept, complete=False, usable=enough)
 
-    def _start(self, reading: Reading) -> None:
+    def _start(self, reading: Item) -> None:
         self._readings = [reading]
         self._swept, self._direction, self._least_step = 0.0, 0.0, FULL_TURN
 
-    def _drop(self, reason: str, reading: Reading) -> Turn:
+    def _drop(self, reason: str, reading: Item) -> Turn[Item]:
         self._refused[reason] += 1
         self._refused["beams_in_dropped_turns"] += len(self._readings)
         last_ns = self._readings[-1].stamp_ns
@@ -159,7 +175,7 @@ class TurnDetector:
         self._start(reading)
         return turn
 
-    def _finish(self, reading: Reading) -> Turn:
+    def _finish(self, reading: Item) -> Turn[Item]:
         turn = Turn(self._readings, reading.stamp_ns, self._swept, complete=True)
         self._start(reading)
         return turn

@@ -10,6 +10,7 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.dead_reckoning import DeadReckoning
 from msss_graphslam.core.graph_slam import GraphSlam
 from msss_graphslam.core.logbook import Logbook
+from msss_graphslam.core.motion_feedback import persistence_of
 from msss_graphslam.core.online_pose import OnlinePose
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scan_generator import ScanGenerator
@@ -36,6 +37,7 @@ class Pipeline:
         self._scans = ScanGenerator(configuration, refused, stage)
         self._slam = GraphSlam(configuration, recipe, stage)
         self._logbook = Logbook(configuration, recipe, stage)
+        self._persistence = persistence_of(configuration.dead_reckoning)
         self._latest: Odometry | None = None
         self._online: OnlinePose | None = None
 
@@ -73,7 +75,7 @@ class Pipeline:
         if self._latest is None:
             return
         if self._online is None:
-            self._online = OnlinePose(self._latest)
+            self._online = OnlinePose(self._latest, self._persistence)
         self._logbook.add_online(stamp_ns, self._online.at(self._latest, stamp_ns))
 
     def _add(self, scans: list[Scan]) -> None:
@@ -83,7 +85,8 @@ class Pipeline:
                 self._add_keyframe(scan)
 
     def _add_keyframe(self, scan: Scan) -> None:
-        self._logbook.constraints += self._slam.add_scan(scan)  # lines 9 to 22
+        self._slam.add_scan(scan)  # lines 9 to 22
+        self._logbook.constraints = self._slam.constraints
         self._logbook.poses = self._slam.front_end.poses
         correction = self._slam.front_end.correction()
         self._logbook.twist_error = correction.twist_error

@@ -6,7 +6,7 @@ Units are SI, angles radians, stamps integer nanoseconds of acquisition. A plana
 (x, y, yaw). Frames follow REP-103 and REP-105: ENU, z up, yaw counter-clockwise.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -233,7 +233,10 @@ class TwistError:
 
 @dataclass(frozen=True, slots=True)
 class MapCorrection:
-    """Where the newest scan's end lies in ``map``: ``pose`` (3,), its ``covariance`` (3, 3)."""
+    """Where the vehicle was in the middle of the newest scan, in ``map``.
+
+    ``pose`` (3,) with its ``covariance`` (3, 3) at ``stamp_ns``, the moment that a scan knows best.
+    """
 
     stamp_ns: int
     pose: Array
@@ -300,5 +303,5 @@ class Estimate:
     online: Trajectory
     dead_reckoning: Trajectory
     keyframes: tuple[Keyframe, ...]
-    first_scans: tuple[Scan, ...]
+    first_scans: Sequence[Scan]
     constraints: tuple[Constraint, ...]
