@@ -12,10 +12,12 @@ OTHER_FLAVOUR := $(filter-out $(STAMP),$(wildcard $(VENV)/.ready-*))
 # One thread a process: the tests are spread over the cores already.
 export OMP_NUM_THREADS ?= 1
 # Plug-ins of a sourced ROS are older than this pytest: only our own are loaded.
+# Tests that start processes wait for them most of the time.
+WORKERS ?= $(shell echo $$((2 * $$(getconf _NPROCESSORS_ONLN))))
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/python -m pytest -p xdist.plugin -p _hypothesis_pytestplugin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test colcon lint bench reproduce sample-bag defaults clean
+.PHONY: help setup demo test colcon lint bench reproduce accuracy ablation sample-bag defaults clean
 
 help: ## show the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -36,7 +38,7 @@ demo: $(STAMP) ## replay the sample bag through all nodes and show the result
 	$(BIN)/msss live --replay bags/pond --rate 0 --out demo
 
 test: $(STAMP) ## pass the tests
-	$(PYTEST) -n auto --dist worksteal --ignore test/system $(TESTS)
+	$(PYTEST) -n $(WORKERS) --dist worksteal --ignore test/system $(TESTS)
 
 test-system: $(STAMP) ## pass the tests of the whole node graph, which want a quiet machine
 	$(PYTEST) -n auto --dist worksteal test/system
@@ -58,13 +60,20 @@ lint: $(STAMP) ## style, types and the direction of imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(STAMP) ## milliseconds a scan by stage, for every estimator; cost of the live nodes
+bench: $(STAMP) ## cost by stage, beside other matchers and solvers, and of the live nodes
 	$(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m benchmarks.side_by_side
 	$(BIN)/python -m benchmarks.live
 	$(BIN)/python -m benchmarks.micron_driver
 
 reproduce: $(STAMP) ## the paper's numbers beside ours, into docs/reproduction.md
 	$(BIN)/python -m benchmarks.reproduce $(OPTIONS)
+
+accuracy: $(STAMP) ## full under many conditions beside its bars, into docs/accuracy.md
+	$(BIN)/python -m benchmarks.accuracy $(OPTIONS)
+
+ablation: $(STAMP) ## what each idea of full is worth, into docs/ablation.md
+	$(BIN)/python -m benchmarks.ablation $(OPTIONS)
 
 sample-bag: $(STAMP) ## make the sample bag anew
 	$(BIN)/python bags/make_sample.py

@@ -1,37 +1,57 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""One simulated mission through the estimators, and how far off they are."""
+"""What is simulated, and how far off an estimate of it is."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.recipes import ESTIMATORS
+from benchmarks.jumps import largest_jumps
+from msss_graphslam.core.types import Estimate, Trajectory
 from msss_graphslam.evaluation.errors import position_errors, start_end_gap
-from msss_graphslam.offline.estimation import estimate
-from msss_graphslam.recordings.reader import open_recording
-from msss_graphslam.results.record import RunRecord
 from msss_graphslam.simulation.echo_model import EchoKind
-from msss_graphslam.simulation.recording import simulate
-from msss_graphslam.simulation.worlds import world_named
+from msss_graphslam.simulation.inertial import NoiseLevel
+from msss_graphslam.simulation.settings import SonarSettings
+from msss_graphslam.simulation.worlds import World, world_named
 
-__all__ = ["Accuracy", "Mission", "accuracy", "estimates", "keep_silent"]
+__all__ = ["Accuracy", "Changes", "Mission", "accuracy", "keep_silent", "spelt"]
+
+Changes = tuple[tuple[str, Any], ...]
+"""Names and what they are set to."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mission:
-    """What is simulated; everything else of a simulation keeps its default."""
+    """What is simulated; everything else of a simulation keeps its default.
+
+    ``sonar`` changes settings of the world's sonar; ``dvl`` adds a DVL.
+    """
 
     world: str
     echo: EchoKind
     seed: int
+    noise: NoiseLevel = NoiseLevel.PAPER
+    dvl: bool = False
+    sonar: Changes = ()
 
     def __str__(self) -> str:
-        return f"{self.world}_{self.echo}_{self.seed}"
+        words = [self.world, str(self.echo), str(self.seed)]
+        if self.noise is not NoiseLevel.PAPER:
+            words.append(str(self.noise))
+        if self.dvl:
+            words.append("dvl")
+        return "_".join([*words, *spelt(self.sonar)])
+
+    @property
+    def place(self) -> World:
+        """The world that is flown through."""
+        return world_named(self.world)
+
+    @property
+    def head(self) -> SonarSettings:
+        """The settings of the sonar."""
+        return replace(self.place.sonar, **dict(self.sonar))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +59,9 @@ class Accuracy:
     """How far off a run is [m].
 
     Mean position errors: ``anchored`` at the start, ``aligned`` to the truth, ``online`` as
-    published at the time, anchored; ``gap`` between start and end, and the vehicle's ``true_gap``.
+    published at the time, anchored; ``gap`` between start and end, and the vehicle's ``true_gap``;
+    ``jump``, the largest of the pose known online, and ``plain_jump`` without those of a first far
+    loop closure. ``turned`` is by how much the whole trajectory is turned [deg].
     """
 
     anchored: float
@@ -47,34 +69,34 @@ class Accuracy:
     online: float
     gap: float
     true_gap: float
+    jump: float = 0.0
+    plain_jump: float = 0.0
+    turned: float = 0.0
 
 
-def estimates(
-    mission: Mission, estimators: Iterable[str], scratch: Path
-) -> Iterator[tuple[str, Accuracy]]:
-    """Simulate the mission into a bag under ``scratch``, run the estimators, delete the bag."""
-    with TemporaryDirectory(dir=scratch) as folder:
-        world = world_named(mission.world)
-        bag = simulate(world, mission.seed, Path(folder), echo=mission.echo).bag
-        for name in estimators:
-            recording = open_recording(bag)
-            record = estimate(recording, ESTIMATORS[name], Configuration(), keep_silent)
-            yield name, accuracy(record)
-
-
-def accuracy(record: RunRecord) -> Accuracy:
-    """Measure a run against its truth; ValueError where the recording has none."""
-    if record.truth is None:
-        raise ValueError(f"{record.bag.name} has no ground truth")
-    final = position_errors(record.estimate.trajectory, record.truth)
-    online = position_errors(record.estimate.online, record.truth)
+def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
+    """Measure an estimate against the truth."""
+    final = position_errors(estimate.trajectory, truth)
+    online = position_errors(estimate.online, truth)
+    jump, plain_jump = largest_jumps(estimate)
     return Accuracy(
         anchored=float(np.mean(final.anchored)),
         aligned=float(np.mean(final.aligned)),
         online=float(np.mean(online.anchored)),
-        gap=start_end_gap(record.estimate.trajectory),
-        true_gap=start_end_gap(record.truth),
+        gap=start_end_gap(estimate.trajectory),
+        true_gap=start_end_gap(truth),
+        jump=jump,
+        plain_jump=plain_jump,
+        turned=float(np.degrees(np.abs(np.mean(final.heading)))),
     )
+
+
+def spelt(changes: Changes) -> list[str]:
+    """Return the changes as words that a file may be called by."""
+    return [
+        f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={value}"
+        for name, value in changes
+    ]
 
 
 def keep_silent(fraction: float, what: str) -> None:

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page that sets the paper's numbers beside ours."""
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 
+from benchmarks.campaign import Provenance
 from benchmarks.promises import promises_table
 from benchmarks.study import ALIGNED, GAP, ONLINE, POSITION, TRUE_GAP, Study
 from benchmarks.tables import Table
@@ -15,7 +16,7 @@ from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Array
 from msss_graphslam.simulation.echo_model import EchoKind
 
-__all__ = ["Provenance", "accuracy_table", "reproduction_page"]
+__all__ = ["accuracy_table", "metres", "rendered", "reproduction_page"]
 
 TEMPLATE = "reproduction.md.jinja"
 
@@ -33,21 +34,24 @@ PUBLISHED = {
 """What the paper states for a world (Section VIII): which figure, and its values [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Provenance:
-    """What made the results: the ``command``, the package's ``version``, its ``sources``."""
-
-    command: str
-    version: str
-    sources: str
-
-
 def reproduction_page(study: Study, provenance: Provenance) -> str:
     """Return the whole page as Markdown; the study must hold the worlds `paper` and `pond`."""
     tables = {
         world: {str(echo): accuracy_table(study, world, echo).markdown() for echo in EchoKind}
         for world in study.worlds
     }
+    return rendered(
+        TEMPLATE,
+        provenance=provenance,
+        seeds={world: study.seeds(world) for world in study.worlds},
+        tables=tables,
+        promises=promises_table(study).markdown(),
+        facts=_facts(study),
+    )
+
+
+def rendered(template: str, **content: Any) -> str:
+    """Return a page: one of the templates in this folder, filled in."""
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=select_autoescape(),
@@ -56,13 +60,7 @@ def reproduction_page(study: Study, provenance: Provenance) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    return environment.get_template(TEMPLATE).render(
-        provenance=provenance,
-        seeds={world: study.seeds(world) for world in study.worlds},
-        tables=tables,
-        promises=promises_table(study).markdown(),
-        facts=_facts(study),
-    )
+    return environment.get_template(template).render(**content)
 
 
 def accuracy_table(study: Study, world: str, echo: EchoKind) -> Table:
@@ -86,10 +84,11 @@ def accuracy_table(study: Study, world: str, echo: EchoKind) -> Table:
 
 def _statistics(values: Array) -> str:
     figures = (np.mean(values), np.median(values), np.max(values))
-    return " / ".join(_metres(float(figure)) for figure in figures)
+    return " / ".join(metres(float(figure)) for figure in figures)
 
 
-def _metres(value: float) -> str:
+def metres(value: float) -> str:
+    """Return a length [m] in three digits or to the millimetre."""
     return f"{value:.2f}" if value >= 1.0 else f"{value:.3f}"
 
 
@@ -98,13 +97,13 @@ def _facts(study: Study) -> dict[str, str]:
 
     def spread(estimator: str) -> str:
         errors = study.values("paper", EchoKind.IDEAL, estimator, POSITION)
-        return f"{_metres(errors.min())} m to {_metres(errors.max())} m"
+        return f"{metres(errors.min())} m to {metres(errors.max())} m"
 
     drift = study.mean("paper", EchoKind.IDEAL, "dead_reckoning", POSITION)
     true_gaps = study.values("pond", EchoKind.IDEAL, "dead_reckoning", TRUE_GAP)
     return {
-        "drift": f"{_metres(drift)} m",
+        "drift": f"{metres(drift)} m",
         "drift_spread": spread("dead_reckoning"),
         "chen2015_spread": spread("chen2015"),
-        "true_gap": f"{_metres(true_gaps.max())} m",
+        "true_gap": f"{metres(true_gaps.max())} m",
     }

@@ -9,14 +9,18 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import msss_graphslam
-from benchmarks import missions
-from benchmarks.missions import Accuracy, Mission
+from benchmarks import alterations, flights, front_memory, jumps, missions, neutral, parts, trials
+from benchmarks.missions import Accuracy
+from benchmarks.trials import Trial
 
-__all__ = ["ResultCache", "fingerprint", "sources"]
+__all__ = ["ResultCache", "fingerprint", "simulation_sources", "sources"]
 
 PACKAGE = Path(msss_graphslam.__file__).parent
-WITHOUT_EFFECT = {"cli", "figures"}
-"""Folders of the package that no figure of a run depends on."""
+SIMULATED = ("simulation",)
+ESTIMATED = ("config", "core", "evaluation", "messages", "simulation")
+"""Folders of the package that a run's figures depend on."""
+WITHOUT_EFFECT = {"figures", "emulator"}
+"""Folders in these that they do not depend on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +30,9 @@ class ResultCache:
     folder: Path
     fingerprint: str
 
-    def load(self, mission: Mission, estimator: str) -> Accuracy | None:
+    def load(self, trial: Trial) -> Accuracy | None:
         """Return the run's result, or None where it has to be made; an outdated one is deleted."""
-        path = self._path(mission, estimator)
+        path = self._path(trial)
         if not path.exists():
             return None
         kept = json.loads(path.read_text(encoding="utf-8"))
@@ -37,26 +41,27 @@ class ResultCache:
             return None
         return Accuracy(**kept["accuracy"])
 
-    def store(self, mission: Mission, estimator: str, accuracy: Accuracy) -> None:
+    def store(self, trial: Trial, accuracy: Accuracy) -> None:
         """Keep the run's result; the file is written whole or not at all."""
-        path = self._path(mission, estimator)
+        path = self._path(trial)
         text = json.dumps({"sources": self.fingerprint, "accuracy": asdict(accuracy)}, indent=2)
         unfinished = path.with_suffix(".part")
         unfinished.write_text(f"{text}\n", encoding="utf-8")
         unfinished.replace(path)
 
-    def _path(self, mission: Mission, estimator: str) -> Path:
-        return self.folder / f"{mission}_{estimator}.json"
+    def _path(self, trial: Trial) -> Path:
+        return self.folder / f"{trial}.json"
 
 
 def sources() -> list[Path]:
     """Return the files that a run's result depends on, sorted."""
-    used = [
-        path
-        for path in PACKAGE.rglob("*.py")
-        if WITHOUT_EFFECT.isdisjoint(path.relative_to(PACKAGE).parts)
-    ]
-    return sorted([*used, Path(missions.__file__)])
+    makers = (alterations, flights, front_memory, jumps, missions, neutral, parts, trials)
+    return _sources(ESTIMATED, [Path(module.__file__ or "") for module in makers])
+
+
+def simulation_sources() -> list[Path]:
+    """Return the files that a simulated mission depends on, sorted."""
+    return _sources(SIMULATED, [Path(flights.__file__)])
 
 
 def fingerprint(paths: Iterable[Path]) -> str:
@@ -67,3 +72,13 @@ def fingerprint(paths: Iterable[Path]) -> str:
         checksum.update(path.read_bytes())
         checksum.update(b"\0")
     return checksum.hexdigest()
+
+
+def _sources(folders: Iterable[str], others: Iterable[Path]) -> list[Path]:
+    used = [
+        path
+        for folder in folders
+        for path in (PACKAGE / folder).rglob("*.py")
+        if WITHOUT_EFFECT.isdisjoint(path.relative_to(PACKAGE).parts)
+    ]
+    return sorted([*used, *others])

@@ -6,7 +6,8 @@ import re
 
 from made_up_study import made_up_study
 
-from benchmarks.page import Provenance, accuracy_table, reproduction_page
+from benchmarks.campaign import Provenance
+from benchmarks.page import accuracy_table, reproduction_page
 from benchmarks.promises import promises_table
 from msss_graphslam.simulation.echo_model import EchoKind
 

@@ -5,6 +5,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from made_up_study import made_up_study
 from synthetic_run import synthetic_run
@@ -12,37 +13,40 @@ from synthetic_run import synthetic_run
 from benchmarks.missions import Accuracy, Mission, accuracy
 from benchmarks.reproduce import main, missions
 from benchmarks.result_cache import PACKAGE, ResultCache, fingerprint, sources
+from benchmarks.trials import Trial
 from msss_graphslam.evaluation.errors import position_errors, start_end_gap
 from msss_graphslam.simulation.echo_model import EchoKind
 
 MISSION = Mission("pond", EchoKind.REAL, 3)
+TRIAL = Trial(MISSION)
 RESULT = Accuracy(0.1, 0.05, 0.2, 0.3, 0.01)
 
 
 def test_a_result_is_found_again(tmp_path: Path) -> None:
     cache = ResultCache(tmp_path, "abc")
-    cache.store(MISSION, "full", RESULT)
-    assert cache.load(MISSION, "full") == RESULT
+    cache.store(TRIAL, RESULT)
+    assert cache.load(TRIAL) == RESULT
 
 
 @pytest.mark.parametrize(
-    ("mission", "estimator"),
+    "other",
     [
-        (MISSION, "uspic"),
-        (replace(MISSION, seed=4), "full"),
-        (replace(MISSION, world="paper"), "full"),
-        (replace(MISSION, echo=EchoKind.IDEAL), "full"),
+        Trial(MISSION, estimator="uspic"),
+        Trial(replace(MISSION, seed=4)),
+        Trial(replace(MISSION, world="paper")),
+        Trial(replace(MISSION, echo=EchoKind.IDEAL)),
+        Trial(MISSION, without="loop closures"),
     ],
 )
-def test_a_result_is_no_other_runs(tmp_path: Path, mission: Mission, estimator: str) -> None:
+def test_a_result_is_no_other_runs(tmp_path: Path, other: Trial) -> None:
     cache = ResultCache(tmp_path, "abc")
-    cache.store(MISSION, "full", RESULT)
-    assert cache.load(mission, estimator) is None
+    cache.store(TRIAL, RESULT)
+    assert cache.load(other) is None
 
 
 def test_a_result_of_other_sources_is_thrown_away(tmp_path: Path) -> None:
-    ResultCache(tmp_path, "abc").store(MISSION, "full", RESULT)
-    assert ResultCache(tmp_path, "abd").load(MISSION, "full") is None
+    ResultCache(tmp_path, "abc").store(TRIAL, RESULT)
+    assert ResultCache(tmp_path, "abd").load(TRIAL) is None
     assert list(tmp_path.iterdir()) == []
 
 
@@ -73,7 +77,7 @@ def test_a_study_that_is_known_whole_only_writes_its_page(tmp_path: Path) -> Non
     cache.folder.mkdir()
     for (mission, name), result in made_up_study().results.items():
         if mission.seed <= 2:
-            cache.store(mission, name, result)
+            cache.store(Trial(mission, name), result)
     page = tmp_path / "page.md"
     options = ["--seeds", "2", "--other-seeds", "0", "--results", str(cache.folder)]
     main([*options, "--page", str(page)])
@@ -90,15 +94,11 @@ def test_a_study_needs_a_seed(seeds: str, capsys: pytest.CaptureFixture[str]) ->
 def test_accuracy_is_that_of_the_final_and_of_the_online_trajectory() -> None:
     record = synthetic_run()
     assert record.truth is not None
-    measured = accuracy(record)
+    measured = accuracy(record.estimate, record.truth)
     final = position_errors(record.estimate.trajectory, record.truth)
     assert measured.anchored == pytest.approx(final.anchored.mean())
     assert measured.aligned == pytest.approx(final.aligned.mean())
     assert measured.online > measured.anchored
+    assert measured.turned == pytest.approx(abs(np.degrees(final.heading.mean())))
     assert measured.gap == start_end_gap(record.estimate.trajectory)
     assert measured.true_gap == start_end_gap(record.truth)
-
-
-def test_without_a_truth_there_is_no_accuracy() -> None:
-    with pytest.raises(ValueError, match="no ground truth"):
-        accuracy(synthetic_run(with_truth=False))

@@ -17,6 +17,7 @@ PYPI_NAMES = {"serial": "pyserial", "yaml": "pyyaml"}
 CORE_MAY_USE = {"gtsam", "msss_graphslam", "numpy", "scipy"}
 """Beside the parts of the standard library that compute, and touch nothing outside."""
 CORE_MAY_USE |= {
+    "array",
     "bisect",
     "cmath",
     "collections",

@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""What stands in for a part of ``full`` that is taken out: the same call, to no effect."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from msss_graphslam.config.groups import BackEnd as BackEndConfig
+from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.joint_smoothing import Smoothed
+from msss_graphslam.core.matchers import ScanMatcher
+from msss_graphslam.core.motion_feedback import MotionFeedback
+from msss_graphslam.core.refinement import Refined, whole_graph
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan, TwistError
+
+__all__ = ["NoFeedback", "refine", "smooth", "without_odometry"]
+
+_WEAKNESS = 1e6
+_add_scan = FrontEnd.add_scan
+
+
+class NoFeedback(MotionFeedback):
+    """A motion feedback that learns nothing."""
+
+    def update(self, offset: Array, covariance: Array) -> None:
+        """Leave everything as it is."""
+        del offset, covariance
+
+
+def refine(
+    scans: Sequence[Scan],
+    poses: Array,
+    constraints: Sequence[Constraint],
+    known: TwistError | None,
+    matcher: ScanMatcher,
+    config: BackEndConfig,
+    progress: Callable[[float], None],
+) -> Refined:
+    """Return the graph as it is."""
+    del scans, known, matcher
+    progress(1.0)
+    return Refined(poses, whole_graph(poses, constraints, config), list(constraints))
+
+
+def smooth(scans: Sequence[Scan], poses: Array, last_twist: Array, *others: Any) -> Smoothed:
+    """Return the poses as they are; of their covariances nothing is said."""
+    del scans, others
+    unknown = np.full((len(poses), 3, 3), np.nan)
+    return Smoothed(poses, unknown, last_twist, np.full((3, 3), np.nan))
+
+
+def without_odometry(front_end: FrontEnd, scan: Scan) -> list[Constraint]:
+    """Return a new keyframe's constraints; beside a match its odometry counts next to nothing.
+
+    It is not left out, for the refinement may refuse the match and leave the keyframe unattached.
+    """
+    tried = _add_scan(front_end, scan)
+    matched = any(edge.accepted and edge.kind is ConstraintKind.CONSECUTIVE for edge in tried)
+    return [_weak(edge) if matched else edge for edge in tried]
+
+
+def _weak(edge: Constraint) -> Constraint:
+    if edge.kind is not ConstraintKind.ODOMETRY:
+        return edge
+    return replace(edge, covariance=_WEAKNESS * edge.covariance)
