@@ -3,6 +3,7 @@
 """The recording that is replayed: looked at before anything starts, and for its truth."""
 
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 from msss_graphslam.config.configuration import Configuration
@@ -28,6 +29,7 @@ def needs_driver(bag: Path) -> bool:
     return open_recording(bag).sonar_topic == topics.SONAR_RAW
 
 
+@cache
 def truth_of(bag: Path) -> Trajectory | None:
     """Return the bag's ground truth, for the evaluation alone, or None where it has none."""
     return open_recording(bag).ground_truth()

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 
 from msss_graphslam.errors import UserError
 from msss_graphslam.live.command_table import Setup, command_table, saving_order
-from msss_graphslam.live.conclusion import conclude_in
-from msss_graphslam.live.replayed import configured_for, needs_driver
+from msss_graphslam.live.conclusion import concluding_in
+from msss_graphslam.live.replayed import configured_for, needs_driver, truth_of
 from msss_graphslam.live.session import Outcome, Progress, run_session
 from msss_graphslam.live.supervisor import Say
 from msss_graphslam.nodes.names import REPLAY, SLAM_NODES
@@ -38,7 +38,7 @@ def run(setup: Setup, say: Say, progress: Progress) -> Outcome:
             directory.path / _LOGS,
             saving=saving_order(setup),
             until=REPLAY if setup.replay is not None else None,
-            conclude=conclude_in(setup.namespace),
+            concluding=concluding_in(setup.namespace),
             say=say,
             progress=progress,
         )
@@ -56,6 +56,7 @@ def _checked(setup: Setup) -> Setup:
         raise UserError(f"{setup.record}: exists already; nothing is recorded over it")
     if setup.replay is None:
         return setup
+    truth_of(setup.replay)  # Read now, so that nobody waits for it at the end.
     return replace(
         setup,
         configuration=configured_for(setup.replay, setup.configuration),

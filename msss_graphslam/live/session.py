@@ -5,6 +5,7 @@
 import re
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,11 +22,17 @@ Progress = Callable[[float, str], None]
 Conclude = Callable[[Sequence[str], Progress], dict[str, str]]
 """Has the named processes save, in this order; returns what each said in the end."""
 
-_RUNNING, _SAVING = 0.9, 0.05
-"""Shares of a session, as its progress shows them."""
+_RUNNING = 0.8
+"""Share of a session, as its progress shows it; the rest is for its end."""
+
+_HASTE = 0.5
+"""How long a node may take to end [s] where a second signal has come."""
 
 _SHARE = re.compile(r"replayed (\d+) %")
 """What the replay says at each tenth."""
+
+_SAVED = re.compile(r"saving (\d+) %: (.+)")
+"""What the last of those that save says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +50,14 @@ def run_session(
     *,
     saving: Sequence[str],
     until: str | None,
-    conclude: Conclude,
+    concluding: AbstractContextManager[Conclude],
     say: Say,
     progress: Progress,
 ) -> Outcome:
     """Run the commands until the one named ``until`` has ended, or a signal comes; then save.
 
-    It is over as well when one of those that take part in ``saving`` cannot be kept running. All
+    ``concluding`` is entered when they have been started: at the end nobody has to wait for it. It
+    is over as well when one of those that take part in ``saving`` cannot be kept running. All
     processes have ended when this returns or raises. Raises KeyboardInterrupt on a second signal,
     UserError where the last of ``saving`` is gone.
     """
@@ -57,8 +65,13 @@ def run_session(
     with Interruption() as interruption:
         try:
             session.supervisor.start()
-            session.watch(interruption)
-            answers = session.save(conclude)
+            with concluding as conclude:
+                session.watch(interruption)
+                answers = session.save(conclude)
+        except KeyboardInterrupt:
+            interruption.deaf = True
+            session.supervisor.stop(patience=_HASTE)
+            raise
         finally:
             interruption.deaf = True
             session.supervisor.stop()
@@ -82,7 +95,8 @@ class _Session:
         self._saving = saving
         self._until = until
         self._progress = progress
-        self._share = 0.0
+        self._share = self._saved = 0.0
+        self._saving_what = ""
 
     def watch(self, interruption: Interruption) -> None:
         """Look at the processes until the session is over."""
@@ -111,9 +125,12 @@ class _Session:
     def _save_progress(self, share: float, what: str) -> None:
         """Show how far saving is; who dies meanwhile is started again."""
         self.supervisor.look()
-        self._progress(_RUNNING + _SAVING * share, f"saving {what}".rstrip())
+        share = max(share, self._saved)
+        done = _RUNNING + (1.0 - _RUNNING) * share
+        self._progress(done, f"saving {self._saving_what or what}".rstrip())
 
     def _hear(self, name: str, line: str) -> None:
-        found = _SHARE.search(line) if name == self._until else None
-        if found is not None:
+        if name == self._until and (found := _SHARE.search(line)):
             self._share = min(int(found[1]) / 100, 1.0)
+        if name == self._saving[-1] and (found := _SAVED.search(line)):
+            self._saved, self._saving_what = min(int(found[1]) / 100, 1.0), found[2]

@@ -19,8 +19,12 @@ Say = Callable[[str], None]
 LOOK_EVERY = 0.05
 """Time between two looks at the processes [s]."""
 
-_FAREWELLS = ((signal.SIGINT, 3.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 2.0))
-"""What is sent at the end, and how long each is waited for [s]."""
+_WAIT = 0.01
+"""Time between two looks at processes that have been told to end [s]."""
+
+_PATIENCE = 3.0
+_FAREWELLS = ((signal.SIGTERM, 0.5), (signal.SIGKILL, 2.0))
+"""How long SIGINT is waited for, what is sent then, and how long each is waited for [s]."""
 
 _ENVIRONMENT = {"PYTHONUNBUFFERED": "1", "OMP_NUM_THREADS": "1"}
 """Lines reach the logs at once; the processes share the cores, so none spreads over them all."""
@@ -88,25 +92,28 @@ class Supervisor:
             if not watched.is_leaving and watched.restarts.take(self._clock()):
                 watched.start_again()
 
-    def stop(self, *names: str) -> None:
-        """End the named processes, or all: by SIGINT, then by SIGTERM, at last by SIGKILL."""
+    def stop(self, *names: str, patience: float = _PATIENCE) -> None:
+        """End the named processes, or all: by SIGINT, then by SIGTERM, at last by SIGKILL.
+
+        ``patience`` is how long [s] SIGINT alone is waited for.
+        """
         leaving = [each for each in self._watched if not names or each.name in names]
         for watched in leaving:
             watched.is_leaving = True
-        for number, patience in _FAREWELLS:
+        for number, lasting in ((signal.SIGINT, patience), *_FAREWELLS):
             left = [watched for watched in leaving if watched.process.is_running]
             for watched in left:
                 if number is not signal.SIGINT:
                     self._say(f"{watched.name}: does not end, sent {number.name}")
                 watched.process.send(number)
-            self._wait_for(left, patience)
+            self._wait_for(left, lasting)
         for watched in leaving:
             self._listen(watched)
 
     def _wait_for(self, leaving: Sequence["_Watched"], patience: float) -> None:
         until = time.monotonic() + patience
         while any(each.process.is_running for each in leaving) and time.monotonic() < until:
-            time.sleep(LOOK_EVERY)
+            time.sleep(_WAIT)
 
     def _listen(self, watched: "_Watched") -> None:
         for line in watched.tail.lines():

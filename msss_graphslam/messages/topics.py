@@ -26,6 +26,7 @@ __all__ = [
     "RECENT_BEAMS",
     "RECKONED_PATH",
     "SCAN",
+    "SCANS_END",
     "SCANS_TAKEN",
     "SCAN_BEAMS",
     "SCAN_PROGRESS",
@@ -105,6 +106,7 @@ RECENT_BEAMS = Topic("sonar/recent", "sensor_msgs/msg/LaserScan", latched=True)
 SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2", latched=True)
 SCAN_BEAMS = Topic("scan/beams", "sensor_msgs/msg/PointCloud2", latched=True)
 SCAN_PROGRESS = Topic("scan/progress", "std_msgs/msg/Header")
+SCANS_END = Topic("scan/end", "std_msgs/msg/Header")
 SCANS_TAKEN = Topic("scan/taken", "std_msgs/msg/Header", latched=True)
 TRIED = Topic("graph/tried", "diagnostic_msgs/msg/DiagnosticArray", latched=True)
 GRAPH_POSES = Topic("graph/poses", "sensor_msgs/msg/PointCloud2", latched=True)
@@ -116,6 +118,7 @@ LINKS = (
     SETTLED_ODOMETRY,
     SCAN_BEAMS,
     SCAN_PROGRESS,
+    SCANS_END,
     SCANS_TAKEN,
     TRIED,
     GRAPH_POSES,

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node ``back_end``: keyframes in, optimised poses, maps and result files out."""
 
-import sys
 from collections import Counter, deque
 from pathlib import Path
 from typing import Any
@@ -17,15 +16,17 @@ from msss_graphslam.nodes.arrived import Gathering, take_arrived
 from msss_graphslam.nodes.beginning import Beginning
 from msss_graphslam.nodes.closure_count import ClosureCount
 from msss_graphslam.nodes.display import Display
+from msss_graphslam.nodes.live_run import LiveRun
 from msss_graphslam.nodes.mission import Mission
 from msss_graphslam.nodes.others_refusals import OthersRefusals
+from msss_graphslam.nodes.saving_process import SavingProcess
+from msss_graphslam.nodes.tenths import Tenths
 from msss_graphslam.nodes.timing import Leisure, Throttle
-from msss_graphslam.offline.drawing import Drawing
 from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.offline.stopwatch import Stopwatch
 from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make, message_class
-from msss_graphslam.ros.node import SlamNode, run
+from msss_graphslam.ros.node import SlamNode, leave, run
 
 __all__ = ["BackEndNode", "main"]
 
@@ -44,6 +45,7 @@ _CHANGEABLE = ("mapping",)
 _DIAGNOSTICS = Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 _LOOK = 0.2
 _PATH_PERIOD = 2.0
+_REFINING = 0.5
 
 
 class BackEndNode(SlamNode):
@@ -122,6 +124,10 @@ class BackEndNode(SlamNode):
             self.diagnostics.refused,
             self._watch.stage,
         )
+        self._show_nothing_more()
+
+    def _show_nothing_more(self) -> None:
+        """Leave the pictures as they are until something new comes."""
         self._graph_due = Throttle(0.0)
         self._path_due = Throttle(_PATH_PERIOD)
         self._map_due = Throttle(self._map_period)
@@ -132,6 +138,7 @@ class BackEndNode(SlamNode):
         values["scans"] = lambda: self._mission.scans
         values["last_jump"] = lambda: self._mission.last_jump
         values["largest_jump"] = lambda: self._mission.largest_jump
+        values["loop_closures/withdrawn"] = lambda: self._mission.withdrawals
         values["loop_closures"] = lambda: self._closures.accepted
 
     def _listen(self) -> list[Input]:
@@ -204,22 +211,28 @@ class BackEndNode(SlamNode):
     def _write(self, output: Path) -> None:
         self.diagnostics.clear()
         refused: Counter[str] = self.diagnostics.refused + self._others.total
-        # What draws makes ready while the graph is refined.
-        with Drawing() as drawing:
-            # Results and bags need libraries that a node otherwise does without.
-            from msss_graphslam.nodes.saving import LiveRun, opened, save
-
+        tell = Tenths(self.log)
+        # What writes makes ready while the graph is refined.
+        with SavingProcess(self._recording, self._complain) as saving:
+            estimate = self._mission.logbook().finish(
+                lambda share: tell(_REFINING * share, "refinement")
+            )
             run_of = LiveRun(
                 self.parameters.configuration,
-                self._recipe,
+                self._recipe.name,
                 refused,
                 self._mission.beams,
-                self._watch,
-                opened(self._recording, self._complain),
+                self._watch.cost,
             )
-            record = save(self._mission.logbook().finish(), run_of, output, drawing)
-        self._display.show_path(record.estimate.trajectory)
-        self._display.show_map(self._mission.newest_ns, record.points, record.grid)
+            maps = saving.save(
+                estimate,
+                run_of,
+                output,
+                lambda share, what: tell(_REFINING + (1.0 - _REFINING) * share, what),
+            )
+        self._display.show_path(estimate.trajectory)
+        self._display.show_map(self._mission.newest_ns, *maps)
+        self._show_nothing_more()
 
     def _complain(self, text: str) -> None:
         self.get_logger().error(text)
@@ -237,4 +250,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

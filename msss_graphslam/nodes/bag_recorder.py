@@ -29,6 +29,7 @@ from msss_graphslam.recordings.writer import BagWriter
 from msss_graphslam.ros.diagnostics import TOPIC, Diagnostics
 from msss_graphslam.ros.messages import available, make, message_class
 from msss_graphslam.ros.qos import DEEP, profile_of
+from msss_graphslam.ros.running import leave
 
 __all__ = ["BagRecorder", "main"]
 
@@ -187,4 +188,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

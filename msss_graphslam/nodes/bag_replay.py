@@ -26,6 +26,7 @@ from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.reader import open_recording
 from msss_graphslam.ros.diagnostics import Diagnostics
 from msss_graphslam.ros.messages import available, make, message_class
+from msss_graphslam.ros.running import leave
 
 __all__ = ["BagReplay", "main"]
 
@@ -200,4 +201,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

@@ -17,7 +17,7 @@ __all__ = ["conclude", "reset"]
 # How long services are looked for [s], and those of nodes that are known to be there.
 _DISCOVERY = 1.0
 _LONG_DISCOVERY = 6.0
-_AGAIN = 0.1
+_AGAIN = 0.02
 _RESET = 10.0
 
 Tell = Callable[[str], None]

@@ -8,6 +8,7 @@ from math import dist
 
 import numpy as np
 
+from msss_graphslam.core.motion_feedback import Persistence
 from msss_graphslam.core.online_pose import OnlinePose
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
 from msss_graphslam.messages.link_decoding import StampedPose
@@ -24,8 +25,9 @@ _FURTHEST_AHEAD_NS = 1_000_000_000
 class CorrectedPose:
     """OnlinePose from the first odometry on; a correction that comes earlier waits for it."""
 
-    def __init__(self, refused: Counter[str]) -> None:
+    def __init__(self, refused: Counter[str], persistence: Persistence) -> None:
         self._refused = refused
+        self._persistence = persistence
         self.corrections = 0
         self.last_jump = 0.0
         self.largest_jump = 0.0
@@ -65,7 +67,7 @@ class CorrectedPose:
 
     def _follow(self, odometry: Odometry) -> OnlinePose:
         if self._online is None:
-            self._online = OnlinePose(odometry)
+            self._online = OnlinePose(odometry, self._persistence)
         self._odometry = odometry
         self._pose(self._online, odometry)
         return self._online

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node that reckons where the vehicle is: odometry at once, settled, and corrected."""
 
-import sys
-
 from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.motion_feedback import persistence_of
 from msss_graphslam.core.prompt_dead_reckoning import PromptDeadReckoning
 from msss_graphslam.core.types import Beam, MapCorrection, Measurement, Odometry
 from msss_graphslam.messages import decoding, link_decoding, topics
 from msss_graphslam.messages.link_decoding import StampedPose
-from msss_graphslam.nodes.arrived import Gathering
+from msss_graphslam.nodes.arrived import Gathering, take_arrived
 from msss_graphslam.nodes.beam_relay import BeamRelay
 from msss_graphslam.nodes.corrected_pose import CorrectedPose
 from msss_graphslam.nodes.pose_output import PoseOutput
@@ -17,7 +16,7 @@ from msss_graphslam.nodes.predecessor import Predecessor
 from msss_graphslam.nodes.quiet import Quiet
 from msss_graphslam.nodes.settled_output import SettledOutput
 from msss_graphslam.ros.inputs import Input
-from msss_graphslam.ros.node import SlamNode, run
+from msss_graphslam.ros.node import SlamNode, leave, run
 
 __all__ = ["DeadReckoningNode", "main"]
 
@@ -69,6 +68,7 @@ class DeadReckoningNode(SlamNode):
 
     def on_save(self) -> tuple[bool, str]:
         """Work off what is held and publish it as settled."""
+        take_arrived(self._gathering.inputs)
         if not self._quiet.is_reached():
             return False, "input still comes in"
         if self._queue:
@@ -107,7 +107,10 @@ class DeadReckoningNode(SlamNode):
         self._reckoning = PromptDeadReckoning(
             self.parameters.configuration, self.diagnostics.refused
         )
-        self._corrected = CorrectedPose(self.diagnostics.refused)
+        self._corrected = CorrectedPose(
+            self.diagnostics.refused,
+            persistence_of(self.parameters.configuration.dead_reckoning),
+        )
 
     def _take_beam(self, beam: Beam) -> None:
         self._relay.add(beam)
@@ -185,4 +188,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

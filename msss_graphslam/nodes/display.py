@@ -8,6 +8,7 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.mapping import OccupancyGrid, map_points, occupancy_grid
 from msss_graphslam.core.types import Array, Trajectory
 from msss_graphslam.messages import encoding
+from msss_graphslam.messages.encoding import serialised
 from msss_graphslam.messages.frames import MAP as MAP_FRAME
 from msss_graphslam.messages.topics import KEYFRAMES, MAP, MAP_POINTS, MARKERS, PATH
 from msss_graphslam.nodes.mission import Mission
@@ -33,9 +34,9 @@ class Display:
     def show_graph(self, mission: Mission) -> None:
         """Publish keyframes and edges."""
         path = mission.keyframe_path()
-        self._keyframes.publish(encoding.path(make, path, self._frame), path.poses)
-        markers = encoding.graph_markers(
-            make, mission.newest_ns, mission.poses, mission.constraints, self._frame
+        self._keyframes.publish(serialised.path(path, self._frame), path.poses)
+        markers = serialised.graph_markers(
+            mission.newest_ns, mission.poses, mission.constraints, self._frame
         )
         self._markers.publish(markers, mission.poses)
 
@@ -43,7 +44,7 @@ class Display:
         """Publish the corrected trajectory, thinned to what a viewer can take, its end kept."""
         step = -(-len(trajectory.stamps_ns) // _LONGEST_PATH) or 1
         thinned = Trajectory(trajectory.stamps_ns[::-step][::-1], trajectory.poses[::-step][::-1])
-        self._path.publish(encoding.path(make, thinned, self._frame), thinned.poses)
+        self._path.publish(serialised.path(thinned, self._frame), thinned.poses)
 
     def show_maps(self, mission: Mission, configuration: Configuration) -> None:
         """Publish points and grid of the scans as the trajectory lays them out."""

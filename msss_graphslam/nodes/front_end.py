@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node ``front_end``: scans in, keyframes and their constraints out."""
 
-import sys
 from statistics import median
 from typing import Any
 
@@ -14,15 +13,17 @@ from msss_graphslam.messages.topics import (
     CORRECTION,
     GRAPH_POSES,
     SCAN_BEAMS,
+    SCANS_END,
     SCANS_TAKEN,
     TRIED,
 )
 from msss_graphslam.nodes.closure_count import ClosureCount
 from msss_graphslam.nodes.keyframing import Keyframing
+from msss_graphslam.nodes.last_scan import LastScan
 from msss_graphslam.nodes.timing import Stillness
 from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.ros.messages import make
-from msss_graphslam.ros.node import SlamNode, run
+from msss_graphslam.ros.node import SlamNode, leave, run
 from msss_graphslam.ros.qos import DEEP
 
 __all__ = ["FrontEndNode", "main"]
@@ -52,10 +53,12 @@ class FrontEndNode(SlamNode):
         self._correction = self.offer(CORRECTION)
         self._taken = self.offer(SCANS_TAKEN)
         self._stillness = Stillness()
+        self._last_scan = LastScan()
         self._closures = ClosureCount(self.diagnostics.values)
         self._keyframing = self._begin()
         self._describe()
         self._tell_taken(0)
+        self.listen(SCANS_END, link_decoding.moment, self._take_end, ordered=False, pausable=False)
         self.listen(
             GRAPH_POSES,
             link_decoding.graph_poses,
@@ -71,13 +74,15 @@ class FrontEndNode(SlamNode):
         self._keyframing = self._begin()
         self._closures.clear()
         self._tell_taken(0)
+        self._last_scan = LastScan()
 
     def on_save(self) -> tuple[bool, str]:
         """Say whether every scan is worked off and answered."""
         waiting = self._keyframing.waiting
         if waiting:
             return False, f"{waiting} scans waiting"
-        if not self._stillness.holds():
+        is_still = self._stillness.holds()
+        if not (self._last_scan.take() or is_still):
             return False, "looking whether more is on its way"
         self.diagnostics.publish()
         return True, f"{self._keyframing.keyframes} keyframes"
@@ -105,6 +110,7 @@ class FrontEndNode(SlamNode):
 
     def _take_scan(self, scan: Scan) -> None:
         self._stillness.stir()
+        self._last_scan.came(scan.stamp_ns)
         self._keyframing.add_scan(scan)
         # Of a turn that was cut off, the last beam is the end.
         self._tell_taken(max(self._taken_ns, scan.end_stamp_ns + (not scan.complete)))
@@ -114,6 +120,9 @@ class FrontEndNode(SlamNode):
         self._keyframing.add_answer(known)
         if len(known.stamps_ns):
             self._tell_taken(max(self._taken_ns, int(known.stamps_ns[-1])))
+
+    def _take_end(self, stamp_ns: int) -> None:
+        self._last_scan.told(stamp_ns)
 
     def _tell_taken(self, stamp_ns: int) -> None:
         """Tell from where on beams are missing, for a scan generation that is started again."""
@@ -145,4 +154,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

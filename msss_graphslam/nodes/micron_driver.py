@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node that speaks with a Tritech Micron, or decodes what one has sent."""
 
-import sys
 from collections import Counter
 from dataclasses import replace
 from functools import partial
@@ -18,7 +17,7 @@ from msss_graphslam.nodes.driving.recorded import RecordedHead
 from msss_graphslam.nodes.driving.source import ByteSource
 from msss_graphslam.nodes.replay.relayed_pings import LISTENERS
 from msss_graphslam.ros.diagnostics import Finding, Level
-from msss_graphslam.ros.node import SlamNode, run
+from msss_graphslam.ros.node import SlamNode, leave, run
 
 __all__ = ["MicronDriverNode", "main"]
 
@@ -133,4 +132,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

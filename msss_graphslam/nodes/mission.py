@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.beam_log import BeamLog
+from msss_graphslam.core.guarded_back_end import GuardedBackEnd
 from msss_graphslam.core.logbook import Logbook
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scan_generation import reckoned_scan
@@ -48,14 +48,23 @@ class Mission:
         self._recipe = recipe
         self._refused = refused
         self._stage = stage
-        self._back_end = BackEnd(configuration.back_end)
+        self._back_end = self._new_back_end()
         self._reports: list[KeyframeReport] = []
         self._covariances: list[Array] = []
         self._scans: dict[int, Scan] = {}
         self._online: list[StampedPose] = []
         self.poses: Array = np.empty((0, 3))
-        self.constraints: list[Constraint] = []
         self.last_jump = self.largest_jump = 0.0
+
+    @property
+    def constraints(self) -> list[Constraint]:
+        """All constraints tried, in order, refused as they stand now."""
+        return self._back_end.tried
+
+    @property
+    def withdrawals(self) -> int:
+        """How many loop closures have been taken out of the graph again."""
+        return self._back_end.withdrawals
 
     @property
     def beams(self) -> int:
@@ -180,13 +189,16 @@ class Mission:
         self.last_jump = float(np.linalg.norm(poses[-1, :2] - report.pose[:2]))
         self.largest_jump = max(self.largest_jump, self.last_jump)
         self.poses = poses
-        self.constraints += report.constraints
         self._covariances.append(covariance)
         self._reports.append(report)
         return ""
 
+    def _new_back_end(self) -> GuardedBackEnd:
+        guards = self._recipe.goes_beyond
+        return GuardedBackEnd(self._configuration.back_end, guards=guards)
+
     def _rebuild(self) -> None:
-        self._back_end = BackEnd(self._configuration.back_end)
+        self._back_end = self._new_back_end()
         for report in self._reports:
             self._back_end.take(report.pose, report.constraints)
 

@@ -5,9 +5,9 @@
 from time import monotonic
 
 from msss_graphslam.core.types import Odometry
-from msss_graphslam.messages import encoding, frames, topics
+from msss_graphslam.messages import frames, topics
+from msss_graphslam.messages.encoding import serialised
 from msss_graphslam.nodes.reckoned_path import ReckonedPath
-from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode
 
 __all__ = ["PathOutput"]
@@ -51,7 +51,7 @@ class PathOutput:
         """Publish the way so far."""
         self._is_new = False
         trajectory = self._path.trajectory
-        self._output.publish(encoding.path(make, trajectory, self._frame), trajectory.poses)
+        self._output.publish(serialised.path(trajectory, self._frame), trajectory.poses)
 
     def _look(self) -> None:
         if monotonic() - self._added_at > _SILENCE:

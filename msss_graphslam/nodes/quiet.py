@@ -6,9 +6,9 @@ from time import monotonic
 
 __all__ = ["Quiet"]
 
-_PAUSE = 0.3
+_PAUSE = 0.1
 # Sensors that go on all the time are not waited for any longer [s].
-_PATIENCE = 3.0
+_PATIENCE = 0.2
 
 
 class Quiet:

@@ -4,79 +4,105 @@
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Self
 
-from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.types import Estimate
+from msss_graphslam.core.types import Estimate, Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.evaluation.assessment import assess
 from msss_graphslam.evaluation.report import write_report
+from msss_graphslam.nodes.live_run import LiveRun, Maps
 from msss_graphslam.offline.drawing import Drawing
 from msss_graphslam.offline.stopwatch import Stopwatch
 from msss_graphslam.offline.writing import command_line, record_of, write_assessed
 from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.results.directory import ResultDirectory
-from msss_graphslam.results.record import RunRecord
+from msss_graphslam.results.record import Cost, RunRecord
 
-__all__ = ["LiveRun", "opened", "save"]
+__all__ = ["Source", "save"]
 
 _NOT_ONLINE = "/pose: nothing came; dead reckoning stands for what was known online"
 
 
 @dataclass(frozen=True, slots=True)
-class LiveRun:
-    """What is known of a live run beside its estimate.
+class Source:
+    """The bag that was replayed, if any; only the evaluation looks into it."""
 
-    ``recording`` is the bag that was replayed, if any; only the evaluation looks into it.
-    """
-
-    configuration: Configuration
-    recipe: Recipe
-    refused: Counter[str]
-    beams: int
-    watch: Stopwatch
     recording: Recording | None = None
+    truth: Trajectory | None = None
+    refused: Counter[str] = field(default_factory=Counter)
+
+    @classmethod
+    def of(cls, path: str, complain: Callable[[str], object]) -> Self:
+        """Read what is needed; without it the results are worth writing all the same."""
+        refused: Counter[str] = Counter()
+        try:
+            if not path:
+                return cls()
+            recording = open_recording(Path(path))
+            return cls(recording, recording.ground_truth(refused), refused)
+        except UserError as error:
+            complain(f"{error}; the report goes without it")
+            return cls()
 
 
-def opened(path: str, complain: Callable[[str], object]) -> Recording | None:
-    """Return the recording; without it the results are worth writing all the same."""
-    try:
-        return open_recording(Path(path)) if path else None
-    except UserError as error:
-        complain(f"{error}; the report goes without it")
-        return None
+def save(
+    result: Estimate,
+    run: LiveRun,
+    source: Source,
+    output: Path,
+    progress: Callable[[float, str], object],
+) -> Maps:
+    """Write all files; return the maps. Raises UserError where there is nothing to write.
 
-
-def save(result: Estimate, run: LiveRun, output: Path, drawing: Drawing) -> RunRecord:
-    """Write all files; return the record. Raises UserError where there is nothing to write."""
+    ``progress`` takes the finished share and what is being done.
+    """
     if not len(result.trajectory.stamps_ns):
         raise UserError("no scan has come in")
     directory = ResultDirectory.create(output)
+    progress(0.0, "maps")
+    record = _record(result, run, source)
+    assessment = assess(record)
+    drawing = Drawing(assessment)
+    progress(0.4, "files")
+    write_assessed(assessment, directory)
+    progress(0.7, "figures")
+    write_report(directory, assessment, drawing.pictures())
+    return record.points, record.grid
+
+
+def _record(result: Estimate, run: LiveRun, source: Source) -> RunRecord:
     was_online = len(result.online.stamps_ns) > 0
     record = record_of(
         # Without dead reckoning's node nobody had more than this.
         result if was_online else replace(result, online=result.dead_reckoning),
         run.configuration,
-        run.recording,
-        run.refused.copy(),
+        source.recording,
+        run.refused + source.refused,
         run.beams,
-        run.watch,
-        _command(run),
+        Stopwatch(),
+        _command(run, source.recording),
+        source.truth,
     )
     if not was_online:
         missing = (*record.bag.missing, _NOT_ONLINE)
         record = replace(record, bag=replace(record.bag, missing=missing))
-    assessment = assess(record)
-    drawing.begin(assessment)
-    write_assessed(assessment, directory)
-    write_report(directory, assessment, drawing.pictures())
-    return record
+    return replace(record, cost=_sum(run.cost, record.cost))
 
 
-def _command(run: LiveRun) -> str:
+def _sum(before: Cost, after: Cost) -> Cost:
+    """Return what both processes have cost; the larger one's memory stands for both."""
+    return Cost(
+        before.wall + after.wall,
+        before.cpu + after.cpu,
+        max(before.peak_rss_mib, after.peak_rss_mib),
+        before.stages | after.stages,
+    )
+
+
+def _command(run: LiveRun, recording: Recording | None) -> str:
     words = ["msss", "live"]
-    if run.recording is not None:
-        words += ["--replay", run.recording.path.name]
-    return command_line([*words, "--estimator", run.recipe.name], run.configuration)
+    if recording is not None:
+        words += ["--replay", recording.path.name]
+    return command_line([*words, "--estimator", run.estimator], run.configuration)

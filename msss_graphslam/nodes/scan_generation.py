@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node that makes motion-compensated scans of beams and settled odometry."""
 
-import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from time import monotonic, perf_counter
@@ -13,13 +12,13 @@ from msss_graphslam.core.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Scan
 from msss_graphslam.messages import decoding, encoding, frames, link_decoding, topics
 from msss_graphslam.messages.link_decoding import SettledOdometry
-from msss_graphslam.nodes.arrived import Gathering
+from msss_graphslam.nodes.arrived import Gathering, take_arrived
 from msss_graphslam.nodes.path_output import PathOutput
 from msss_graphslam.nodes.quiet import Quiet
 from msss_graphslam.nodes.resumed_beams import ResumedBeams
 from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make
-from msss_graphslam.ros.node import SlamNode, run
+from msss_graphslam.ros.node import SlamNode, leave, run
 from msss_graphslam.ros.qos import DEEP
 
 __all__ = ["ScanGenerationNode", "main"]
@@ -29,10 +28,10 @@ _LOOK = 0.2
 _PROGRESS_NS = 100_000_000
 _LONG_AGO = -(2**62)
 # Without anything new for so long [s], no odometry will come for the last beams.
-_LONGEST_WAIT = 2.0
+_LONGEST_WAIT = 0.5
 # A sonar that goes on all the time is always ahead of its odometry: after so long [s] the beams
 # count that were there when the save was asked for.
-_PATIENCE = 3.0
+_PATIENCE = 0.2
 
 
 class ScanGenerationNode(SlamNode):
@@ -50,6 +49,7 @@ class ScanGenerationNode(SlamNode):
         self._scan_points = self.offer(topics.SCAN)
         self._path = PathOutput(self)
         self._progress = self.offer(topics.SCAN_PROGRESS)
+        self._end = self.offer(topics.SCANS_END)
         self._transforms = self.offer(topics.TRANSFORMS)
         self._made = 0
         self._busy = 0.0
@@ -69,6 +69,7 @@ class ScanGenerationNode(SlamNode):
 
     def on_save(self) -> tuple[bool, str]:
         """Make the last scans, once the odometry covers them or nothing more comes."""
+        take_arrived(self._gathering.inputs)
         if self._beams.expects_more:
             return False, "waiting for beams of before the start"
         self._beams.join()
@@ -81,6 +82,7 @@ class ScanGenerationNode(SlamNode):
         scans = self._generator.finish()
         self._publish(scans)
         self._path.publish_new()
+        self._end.publish(encoding.moment(make, self._newest_ns))
         return True, f"{len(scans)} last turns made"
 
     @property
@@ -126,7 +128,7 @@ class ScanGenerationNode(SlamNode):
         self._generator = ScanGenerator(
             self.parameters.configuration, self.diagnostics.refused, self._timed
         )
-        self._beam_ns = self._reckoned_ns = 0
+        self._beam_ns = self._reckoned_ns = self._newest_ns = 0
         self._told_ns = _LONG_AGO
         self._beams = ResumedBeams(
             self._take_beam,
@@ -157,6 +159,7 @@ class ScanGenerationNode(SlamNode):
     def _publish(self, scans: list[Scan]) -> None:
         for scan in scans:
             self._made += 1
+            self._newest_ns = scan.stamp_ns
             message = encoding.scan_beams(make, scan)
             numbers = (scan.reckoned, scan.body_points, scan.body_covariances, scan.points)
             if self._scan_beams.publish(message, *numbers, scan.covariances) and scan.usable:
@@ -189,4 +192,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    leave(main())

@@ -1,91 +1,89 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""The figures of a run drawn by a process of their own, while the run's files are written.
+"""The figures of a run drawn by two copies of this process, while it does something else."""
 
-What draws them is loaded there, too, so it neither takes this process' memory nor its time.
-"""
-
+import ctypes
+import os
 import pickle
-import subprocess
-import sys
-from threading import Thread
-from types import TracebackType
-from typing import TYPE_CHECKING, Self
+import signal
+from collections.abc import Sequence
+from itertools import chain, zip_longest
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from msss_graphslam.evaluation.assessment import Assessment
     from msss_graphslam.evaluation.pictures import Picture
 
-__all__ = ["Drawing"]
+__all__ = ["Drawing", "end_with_parent"]
 
-_LONGEST = 120.0
-_MODULE = "msss_graphslam.offline.drawing"
+_COPIES = 2
+
+_SET_PARENT_DEATH_SIGNAL = 1
+"""``PR_SET_PDEATHSIG`` of ``linux/prctl.h``."""
 
 
 class Drawing:
-    """A context manager: the process starts with it and makes ready, and ends with it."""
+    """Begins with its making; for processes without threads, as copies have none.
 
-    def __enter__(self) -> Self:
-        """Start the process."""
-        self._drawn: list[Picture] | None = None
-        self._assessment: Assessment | None = None
-        self._thread: Thread | None = None
-        # Whoever wants this process to end by Ctrl-C has not meant the one that draws.
-        self._process = subprocess.Popen(  # noqa: S603
-            [sys.executable, "-m", _MODULE],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        return self
+    Each copy draws every other figure. Copies that are not waited for end by themselves.
+    """
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """End the process, whether it is through or not."""
-        self._process.kill()
-        if self._thread is not None:
-            self._thread.join()
-        else:
-            self._process.communicate()
+    def __init__(self, assessment: "Assessment") -> None:
+        import msss_graphslam.evaluation.figures.plates  # noqa: F401 - once for all copies
 
-    def begin(self, assessment: "Assessment") -> None:
-        """Have the figures drawn."""
         self._assessment = assessment
-        self._thread = Thread(target=self._draw, args=[pickle.dumps(assessment)], daemon=True)
-        self._thread.start()
+        self._copies = [_Copy(assessment, number) for number in range(_COPIES)]
 
     def pictures(self) -> "list[Picture]":
-        """Return the figures of what was begun; where the process has failed, draw them here."""
-        if self._thread is None or self._assessment is None:
-            raise ValueError("no drawing has been begun")
-        self._thread.join()
-        if self._drawn is None:
-            from msss_graphslam.evaluation.pictures import run_pictures
-
-            self._drawn = run_pictures(self._assessment)
-        return self._drawn
-
-    def _draw(self, task: bytes) -> None:
-        try:
-            answer, _ = self._process.communicate(task, timeout=_LONGEST)
-            self._drawn = pickle.loads(answer)  # noqa: S301 - of our own process
-        except Exception:
-            # No figure is lost by it, whatever it was: it is drawn here.
-            self._process.kill()
+        """Return the figures; where a copy has failed, its share is drawn here."""
+        shares = [
+            _share(self._assessment, number) if drawn is None else drawn
+            for number, drawn in enumerate([copy.pictures() for copy in self._copies])
+        ]
+        in_turn = chain.from_iterable(zip_longest(*shares))
+        return [picture for picture in in_turn if picture is not None]
 
 
-def _main() -> None:
-    import msss_graphslam.evaluation.figures.plates  # noqa: F401 - in time
-    from msss_graphslam.evaluation.pictures import run_pictures
+class _Copy:
+    """A forked process that draws its share."""
 
-    assessment = pickle.load(sys.stdin.buffer)  # noqa: S301 - of our own process
-    pickle.dump(run_pictures(assessment), sys.stdout.buffer)
+    def __init__(self, assessment: "Assessment", number: int) -> None:
+        receiving, sending = os.pipe()
+        self._pid = os.fork()
+        if not self._pid:
+            os.close(receiving)
+            _draw_and_end(assessment, number, sending)
+        os.close(sending)
+        self._receiving = receiving
+
+    def pictures(self) -> "Sequence[Picture | None] | None":
+        """Return what it has drawn, or None where it has failed."""
+        with os.fdopen(self._receiving, "rb") as pipe:
+            try:
+                drawn: Sequence[Picture | None] = pickle.load(pipe)  # noqa: S301 - our own process
+            except (EOFError, pickle.UnpicklingError):
+                return None
+            finally:
+                os.waitpid(self._pid, 0)
+        return drawn
 
 
-if __name__ == "__main__":
-    _main()
+def end_with_parent() -> None:
+    """Have the kernel kill this process with the one that has started it."""
+    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, int(signal.SIGKILL), 0, 0, 0)
+
+
+def _draw_and_end(assessment: "Assessment", number: int, sending: int) -> None:
+    """Draw in a copy, which must never return into the work of what it was copied from."""
+    try:
+        end_with_parent()
+        with os.fdopen(sending, "wb") as pipe:
+            pickle.dump(_share(assessment, number), pipe)
+    finally:
+        os._exit(0)
+
+
+def _share(assessment: "Assessment", number: int) -> "list[Picture | None]":
+    from msss_graphslam.evaluation.pictures import picture_count, run_picture
+
+    return [run_picture(assessment, each) for each in range(number, picture_count(), _COPIES)]

@@ -51,7 +51,8 @@ def estimate(
         raise UserError(f"{recording.path}: no beam can be used ({reasons}); see `msss inspect`")
     result = pipeline.finish(lambda share: progress(READING + REFINING * share, "refinement"))
     progress(READING + REFINING, "maps")
-    return record_of(result, configuration, recording, refused, beams, watch, command)
+    truth = recording.ground_truth(refused)
+    return record_of(result, configuration, recording, refused, beams, watch, command, truth)
 
 
 def _command(recording: Recording, recipe: Recipe, configuration: Configuration) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from msss_graphslam import __version__
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.mapping import map_points, occupancy_grid
-from msss_graphslam.core.types import Beam, Estimate
+from msss_graphslam.core.types import Beam, Estimate, Trajectory
 from msss_graphslam.evaluation.assessment import Assessment, assess
 from msss_graphslam.evaluation.summary import summarise
 from msss_graphslam.offline.stopwatch import Stopwatch
@@ -40,6 +40,7 @@ def record_of(
     beams: int,
     watch: Stopwatch,
     command: str,
+    truth: Trajectory | None,
 ) -> RunRecord:
     """Return all that is known at the end of a run.
 
@@ -53,7 +54,7 @@ def record_of(
         estimate=result,
         points=points,
         grid=grid,
-        truth=recording.ground_truth(refused) if recording else None,
+        truth=truth,
         beams=beams,
         refused=refused,
         configuration=configuration.as_dict(),

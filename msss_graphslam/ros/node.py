@@ -19,9 +19,9 @@ from msss_graphslam.ros.inputs import Input, Rules
 from msss_graphslam.ros.messages import message_class
 from msss_graphslam.ros.outputs import Output
 from msss_graphslam.ros.parameters import Parameters
-from msss_graphslam.ros.running import run
+from msss_graphslam.ros.running import leave, run
 
-__all__ = ["SlamNode", "run"]
+__all__ = ["SlamNode", "leave", "run"]
 
 _TRIGGER = "std_srvs/srv/Trigger"
 _SET_BOOL = "std_srvs/srv/SetBool"

@@ -60,6 +60,11 @@ def recorded(
         dvl=dvl,
         progress=lambda _: None,
     )
+    return measured(mission)
+
+
+def measured(mission: Mission) -> Recorded:
+    """What was measured in a simulated mission, and its truth."""
     stamps = _stamps(mission.sonar.times)
     measurements = sorted(_measurements(mission), key=lambda entry: entry.stamp_ns)
     return Recorded(

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from msss_graphslam.config.groups import Segmentation
-from msss_graphslam.core.ghost_rejection import _connected, reject_ghosts
+from msss_graphslam.core.ghost_rejection import _connected, _stays, reject_ghosts
 
 CONFIG = Segmentation()
 BEAMS = 200
@@ -188,3 +188,18 @@ def test_surfaces_are_the_connected_components_of_the_links(links):
         np.testing.assert_array_equal(
             found[:, None] == found[None, :], wanted[:, None] == wanted[None, :]
         )
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_surfaces_are_judged_as_one_after_another(seed):
+    generator = np.random.default_rng(seed)
+    count = int(generator.integers(1, 80))
+    surfaces = 7 * generator.integers(0, 1 + count // 3, count)
+    beams = np.sort(generator.integers(0, 40, count))
+    deficits = generator.uniform(0.0, 2.0 * CONFIG.ghost_contrast, count)
+    expected = np.zeros(count, dtype=bool)
+    for surface in set(surfaces.tolist()):
+        members = surfaces == surface
+        seen = len(set(beams[members].tolist())) >= CONFIG.surface_beams
+        expected[members] = seen and np.median(deficits[members]) < CONFIG.ghost_contrast
+    np.testing.assert_array_equal(_stays(surfaces, beams, deficits, CONFIG), expected)

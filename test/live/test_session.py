@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,6 +26,8 @@ for tenth in range(1, 11):
     time.sleep(0.1)
 """
 
+SAVING_NODE = f"print('[INFO] [1.5] [one]: saving 50 %: maps', flush=True)\n{NODE}"
+
 WATCHING = """
 import sys, time
 from pathlib import Path
@@ -36,6 +39,7 @@ time.sleep(0.5)
 
 SESSION = """
 import json, sys, time
+from contextlib import nullcontext
 from pathlib import Path
 sys.path[:0] = {path!r}
 from stand_ins import NODE, stand_in
@@ -55,7 +59,7 @@ outcome = run_session(
     Path({logs!r}),
     saving=["one", "two"],
     until=None,
-    conclude=conclude,
+    concluding=nullcontext(conclude),
     say=print,
     progress=lambda *_: None,
 )
@@ -85,7 +89,7 @@ class Record:
             logs,
             saving=[name for name, *_ in scripts if name in ("one", "writer")],
             until=until,
-            conclude=conclude,
+            concluding=nullcontext(conclude),
             say=self.said.append,
             progress=lambda share, what: self.shown.append((share, what)),
         )
@@ -105,8 +109,8 @@ def session_in(logs: Path, looks: int = 0) -> "subprocess.Popen[str]":
 
 def pid_in(log: Path) -> int:
     """Return the pid that a stand-in has said, or 0."""
-    lines = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
-    return int(lines[0].split()[1]) if lines else 0
+    said, ended, _ = (log.read_text(encoding="utf-8") if log.exists() else "").partition("\n")
+    return int(said.split()[1]) if ended else 0
 
 
 def test_it_ends_with_the_replay_and_has_the_nodes_save(tmp_path: Path) -> None:
@@ -123,8 +127,14 @@ def test_progress_follows_the_replay_and_never_falls(tmp_path: Path) -> None:
     shares = [share for share, _ in record.shown]
     assert shares == sorted(shares)
     assert (shares[0], shares[-1]) == (0.0, 1.0)
-    assert {0.45, 0.9} <= {round(share, 9) for share in shares}
+    assert {0.4, 0.8} <= {round(share, 9) for share in shares}
     assert [what for _, what in record.shown][-2:] == ["saving one", "done"]
+
+
+def test_what_the_last_node_says_of_its_saving_is_shown(tmp_path: Path) -> None:
+    record = Record()
+    record.run(tmp_path, ("one", SAVING_NODE, True), ("replay", REPLAY, False))
+    assert (0.9, "saving maps") in [(round(share, 9), what) for share, what in record.shown]
 
 
 def test_a_replay_that_fails_ends_the_session_but_the_rest_is_saved(tmp_path: Path) -> None:

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures drawn by another process: the same ones, whatever becomes of it."""
+"""Figures drawn by copies of this process: the same ones, whatever becomes of them."""
+
+import os
+import signal
 
 import pytest
 from synthetic_run import synthetic_run
@@ -21,39 +24,41 @@ def expected(assessment: Assessment) -> list[Picture]:
     return run_pictures(assessment)
 
 
-def test_the_figures_are_those_drawn_here(
+def test_the_figures_are_those_drawn_here_in_the_same_order(
     assessment: Assessment, expected: list[Picture], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("msss_graphslam.evaluation.pictures.run_pictures", None)
-    with Drawing() as drawing:
-        drawing.begin(assessment)
-        assert drawing.pictures() == expected
+    drawing = Drawing(assessment)
+    monkeypatch.setattr(module, "_share", None)
+    assert drawing.pictures() == expected
 
 
-@pytest.mark.parametrize("name", ["no.such.module", "this", "msss_graphslam"])
-def test_a_process_that_fails_costs_no_figure(
-    name: str, assessment: Assessment, expected: list[Picture], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_copy_that_is_killed_costs_no_figure(
+    number: int, assessment: Assessment, expected: list[Picture]
 ) -> None:
-    monkeypatch.setattr(module, "_MODULE", name)
-    with Drawing() as drawing:
-        drawing.begin(assessment)
-        assert drawing.pictures() == expected
+    drawing = Drawing(assessment)
+    os.kill(drawing._copies[number]._pid, signal.SIGKILL)
+    assert drawing.pictures() == expected
 
 
-def test_a_process_that_nothing_is_asked_of_ends() -> None:
-    with Drawing() as drawing:
-        process = drawing._process
-    assert process.returncode is not None
+def test_copies_that_fail_cost_no_figure_and_never_come_back_here(
+    assessment: Assessment, expected: list[Picture], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, share = os.getpid(), module._share
+
+    def fail_in_copies(of: Assessment, number: int) -> list[Picture | None]:
+        if os.getpid() != here:
+            raise RuntimeError("no font")
+        return share(of, number)
+
+    monkeypatch.setattr(module, "_share", fail_in_copies)
+    assert Drawing(assessment).pictures() == expected
+    assert os.getpid() == here
 
 
-def test_a_process_ends_where_the_work_beside_it_fails(assessment: Assessment) -> None:
-    with pytest.raises(RuntimeError, match="beside"), Drawing() as drawing:
-        process = drawing._process
-        drawing.begin(assessment)
-        raise RuntimeError("beside")
-    assert process.returncode is not None
-
-
-def test_figures_that_were_not_begun_are_an_error() -> None:
-    with Drawing() as drawing, pytest.raises(ValueError, match="begun"):
-        drawing.pictures()
+def test_no_copy_is_left(assessment: Assessment) -> None:
+    drawing = Drawing(assessment)
+    drawing.pictures()
+    for copy in drawing._copies:
+        with pytest.raises(ProcessLookupError):
+            os.kill(copy._pid, 0)

@@ -3,6 +3,7 @@
 """The pose graph: its edges as odometry, and markers to look at."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,20 +18,29 @@ from msss_graphslam.messages.encoding.primitives import (
 )
 from msss_graphslam.messages.frames import MAP
 
-__all__ = ["constraint", "graph_markers"]
+__all__ = ["MARKERS", "MarkerStyle", "constraint", "graph_markers", "marker_points"]
 
 # visualization_msgs/Marker
 _LINE_LIST = 5
 _SPHERE_LIST = 7
 
-_NODE_DIAMETER = 0.3
-_LINE_WIDTH = 0.05
-_COLOURS = {
-    "nodes": (0.0, 0.45, 0.70, 1.0),
-    "odometry": (0.35, 0.35, 0.35, 1.0),
-    "loops": (0.0, 0.62, 0.45, 1.0),
-    "refused": (0.84, 0.37, 0.0, 0.35),
+
+@dataclass(frozen=True, slots=True)
+class MarkerStyle:
+    """How a marker looks: its kind, its size [m], red, green, blue and opacity."""
+
+    kind: int
+    size: float
+    colour: tuple[float, float, float, float]
+
+
+MARKERS = {
+    "nodes": MarkerStyle(_SPHERE_LIST, 0.3, (0.0, 0.45, 0.70, 1.0)),
+    "odometry": MarkerStyle(_LINE_LIST, 0.05, (0.35, 0.35, 0.35, 1.0)),
+    "loops": MarkerStyle(_LINE_LIST, 0.05, (0.0, 0.62, 0.45, 1.0)),
+    "refused": MarkerStyle(_LINE_LIST, 0.05, (0.84, 0.37, 0.0, 0.35)),
 }
+"""The markers of a graph by their namespace."""
 
 
 def constraint(make: Make, stamp_ns: int, edge: Constraint) -> Any:
@@ -58,19 +68,24 @@ def graph_markers(
 
     ``poses`` (n, 3) are the keyframes' x, y, yaw; an edge to a keyframe without one is left out.
     """
-    places = np.zeros((len(poses), 3))
-    places[:, :2] = poses[:, :2]
-    edges: dict[str, list[int]] = {"odometry": [], "loops": [], "refused": []}
-    for edge in constraints:
-        if max(edge.first, edge.second) < len(places):
-            edges[_namespace(edge)] += [edge.first, edge.second]
     stamped = header(make, stamp_ns, frame_id)
-    markers = [_marker(make, stamped, "nodes", _SPHERE_LIST, _NODE_DIAMETER, places)]
-    markers += [
-        _marker(make, stamped, name, _LINE_LIST, _LINE_WIDTH, places[ends])
-        for name, ends in edges.items()
+    markers = [
+        _marker(make, stamped, name, places)
+        for name, places in marker_points(poses, constraints).items()
     ]
     return make("visualization_msgs/msg/MarkerArray", markers=markers)
+
+
+def marker_points(poses: Array, constraints: Sequence[Constraint]) -> dict[str, Array]:
+    """Return the points (m, 3) of each of the MARKERS, two for an edge."""
+    places = np.zeros((len(poses), 3))
+    places[:, :2] = poses[:, :2]
+    ends: dict[str, list[int]] = {name: [] for name in MARKERS if name != "nodes"}
+    for edge in constraints:
+        if edge.first < len(places) > edge.second:
+            ends[_namespace(edge)] += (edge.first, edge.second)
+    edges = {name: places[np.array(rows, dtype=np.intp)] for name, rows in ends.items()}
+    return {"nodes": places, **edges}
 
 
 def _namespace(edge: Constraint) -> str:
@@ -79,14 +94,16 @@ def _namespace(edge: Constraint) -> str:
     return "loops" if edge.kind is ConstraintKind.LOOP else "odometry"
 
 
-def _marker(make: Make, stamped: Any, name: str, kind: int, size: float, places: Array) -> Any:
-    red, green, blue, alpha = _COLOURS[name]
+def _marker(make: Make, stamped: Any, name: str, places: Array) -> Any:
+    style = MARKERS[name]
+    size = style.size
+    red, green, blue, alpha = style.colour
     return make(
         "visualization_msgs/msg/Marker",
         header=stamped,
         ns=name,
         id=0,
-        type=kind,
+        type=style.kind,
         action=0,
         pose=pose_of(make, np.zeros(3)),
         scale=make("geometry_msgs/msg/Vector3", x=size, y=size, z=size),

@@ -99,7 +99,7 @@ def tried(make: Make, report: KeyframeReport) -> Any:
 
 
 def correction(make: Make, placed: MapCorrection) -> Any:
-    """Return where the newest scan's end lies as a nav_msgs/Odometry.
+    """Return where the newest scan's middle lies as a nav_msgs/Odometry.
 
     Its twist is the error of dead reckoning's twist that the sonar has shown.
     """

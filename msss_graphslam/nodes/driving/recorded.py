@@ -9,6 +9,7 @@ from msss_graphslam.config.groups import Micron
 from msss_graphslam.messages import decoding, encoding, topics
 from msss_graphslam.messages.decoding import RawBytes
 from msss_graphslam.micron.raw_log import RawBeams
+from msss_graphslam.nodes.arrived import take_arrived
 from msss_graphslam.nodes.driving.pings import Pings
 from msss_graphslam.nodes.quiet import Quiet
 from msss_graphslam.ros.diagnostics import Finding
@@ -68,6 +69,7 @@ class RecordedHead:
 
     def unfinished(self) -> str:
         """Return what is still to be worked off before a save; empty if nothing is."""
+        take_arrived([self._input])
         return "" if self._quiet.is_reached() else "input still comes in"
 
     def close(self) -> None:
