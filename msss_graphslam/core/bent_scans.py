@@ -21,7 +21,7 @@ from msss_graphslam.core.types import Array, Scan
 
 __all__ = ["BentScans", "applied", "between_jacobian", "change_of"]
 
-KEPT = 1024
+KEPT = 2048
 """Bent scans at hand; others are bent again when they are needed: bounds the memory."""
 
 
@@ -77,6 +77,10 @@ class BentScans:
         changes = change_of(between(states[:-1], states[1:]), self._relatives)
         twists = self.twists + applied(self._by_relative, changes)
         return twists, self._by_relative @ between_jacobian(states[:-1], states[1:])
+
+    def forget(self) -> None:
+        """Let go of the bent scans; they are bent again if they are asked for."""
+        self._version.cache_clear()
 
     def _bend(self, number: int, _: int) -> BentScan:
         relative = self._relatives[number].copy()

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.types import Array, Constraint
@@ -43,6 +44,8 @@ class ClosureReview:
         self._information = np.empty((0, 3, 3))
         self._inside = np.empty(0, dtype=bool)
         self._streaks = np.empty(0, dtype=np.intp)
+        self._distances = np.empty(0)
+        self._poses = np.empty((0, 3))
 
     def add(self, edges: Sequence[Constraint]) -> None:
         """Take note of closures that the graph has taken."""
@@ -56,10 +59,12 @@ class ClosureReview:
         self._information = np.concatenate([self._information, np.linalg.inv(spreads)])
         self._inside = np.concatenate([self._inside, np.ones(len(edges), dtype=bool)])
         self._streaks = np.concatenate([self._streaks, np.zeros(len(edges), dtype=np.intp)])
+        self._distances = np.concatenate([self._distances, np.full(len(edges), np.nan)])
 
     def judge(self, poses: Array) -> Verdict:
         """Compare all closures with the poses (n, 3) after an update."""
-        changes = (self._squared_distances(poses) > self._bound) == self._inside
+        self._follow(poses)
+        changes = (self._distances > self._bound) == self._inside
         self._streaks = np.where(changes, self._streaks + 1, 0)
         due = self._streaks >= PATIENCE
         withdrawn, readmitted = (
@@ -69,12 +74,21 @@ class ClosureReview:
         self._streaks[due] = 0
         return Verdict(tuple(withdrawn.tolist()), tuple(readmitted.tolist()))
 
-    def _squared_distances(self, poses: Array) -> Array:
-        first, second = poses[self._ends[:, 0]], poses[self._ends[:, 1]]
+    def _follow(self, poses: Array) -> None:
+        """Measure again the closures that are new or whose keyframes have moved."""
+        moved = np.ones(len(poses), dtype=bool)
+        known = min(len(poses), len(self._poses))
+        moved[:known] = (poses[:known] != self._poses[:known]).any(axis=1)
+        again = np.flatnonzero(moved[self._ends].any(axis=1) | np.isnan(self._distances))
+        self._distances[again] = self._squared_distances(poses, again)
+        self._poses = poses.copy()
+
+    def _squared_distances(self, poses: Array, chosen: NDArray[np.intp]) -> Array:
+        first, second = (poses[ends] for ends in self._ends[chosen].T)
         away = second - first
         cosine, sine = np.cos(first[:, 2]), np.sin(first[:, 2])
         along = cosine * away[:, 0] + sine * away[:, 1]
         across = cosine * away[:, 1] - sine * away[:, 0]
-        off = np.stack([along, across, away[:, 2]], axis=1) - self._relative
+        off = np.stack([along, across, away[:, 2]], axis=1) - self._relative[chosen]
         off[:, 2] = wrap(off[:, 2])
-        return np.asarray(np.einsum("ni,nij,nj->n", off, self._information, off))
+        return np.asarray(np.einsum("ni,nij,nj->n", off, self._information[chosen], off))

@@ -48,6 +48,10 @@ __all__ = ["FrontEnd"]
 ROUNDS = 6
 """Most matches of consecutive scans: each corrects their layout for the next."""
 
+LEAST_VARIANCE = 1e-7
+"""Dead reckoning is never surer of a turn's way than this [m^2, rad^2]: beside a closure that says
+nothing of a direction, a surer edge leaves the graph's equations without a solution in doubles."""
+
 SETTLED, SETTLED_ANGLE = 0.01, 0.001
 """Rounds end when the displacement changes by less than this [m], [rad]."""
 
@@ -162,7 +166,7 @@ class FrontEnd:
         relative = motion[-1]
         covariance, edge = (
             motion_covariances(motion, elapsed, self._known_error(scan, error))[-1]
-            + 1e-9 * np.eye(3)
+            + LEAST_VARIANCE * np.eye(3)
             for error in (feedback.covariance, feedback.coherent())
         )
         by_first, by_second = compose_jacobians(self.poses[-1], relative)
@@ -213,15 +217,22 @@ class FrontEnd:
         constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
         if not self._recipe.goes_beyond:
             return constraint
+        accepted: list[Constraint] = []
         for _ in range(ROUNDS - 1):
             if not constraint.accepted:
                 break
+            accepted.append(constraint)
             self._learn(constraint)
             before = constraint.relative_pose
-            constraint = consecutive_constraint(self.nodes, relative, covariance, matcher)
+            # Both scans are laid out by it: the first guess may be out of the basin by now.
+            constraint = consecutive_constraint(self.nodes, relative, covariance, matcher, before)
             change = np.abs(between(before, constraint.relative_pose))
             if max(change[0], change[1]) < SETTLED and change[2] < SETTLED_ANGLE:
                 break
+        if accepted and not constraint.accepted:
+            # The rounds led astray, as where the vehicle began to turn and no gyro said so.
+            constraint = max(accepted, key=lambda entry: entry.figures.get("overlap", 0.0))
+            self._learn(constraint)
         return self._widened(constraint)
 
     def _widened(self, constraint: Constraint) -> Constraint:

@@ -45,13 +45,19 @@ def odometry_constraint(
 
 
 def consecutive_constraint(
-    nodes: Sequence[Node], initial: Array, initial_covariance: Array, matcher: ScanMatcher
+    nodes: Sequence[Node],
+    initial: Array,
+    initial_covariance: Array,
+    matcher: ScanMatcher,
+    start: Array | None = None,
 ) -> Constraint:
-    """Algorithm 4, lines 3 to 7: match the last keyframe with the one before."""
+    """Algorithm 4, lines 3 to 7: match the last keyframe with the one before.
+
+    ``start`` (3,) is what an earlier match of the two has found, None where there was none.
+    """
     last = len(nodes) - 1
-    result = matcher.match(
-        nodes[last - 1].prepared, nodes[last].prepared, initial, initial_covariance
-    )
+    reference, current = nodes[last - 1].prepared, nodes[last].prepared
+    result = matcher.match(reference, current, initial, initial_covariance, start)
     guess = Constraint(ConstraintKind.CONSECUTIVE, last - 1, last, initial, initial_covariance)
     return matched(guess, result)
 

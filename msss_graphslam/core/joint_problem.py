@@ -80,6 +80,10 @@ class JointProblem:
         """
         return self._scans.twists_at(states)
 
+    def forget(self) -> None:
+        """Let go of what can be had again, for what comes after needs the memory."""
+        self._scans.forget()
+
     def _pair_moved(self, displacements: Array, bent: NDArray[np.bool_], reach: float) -> None:
         """Pair anew the pairs of scans that were bent or whose displacement has moved."""
         change = change_of(displacements, self._displacements)

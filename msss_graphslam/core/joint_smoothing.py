@@ -86,6 +86,7 @@ def smooth(
 
 def _found(problem: JointProblem, states: Array, reach: float) -> Smoothed:
     equations = problem.linearised(states, reach)
+    problem.forget()
     covariances = equations.covariances()
     covariances[0] = LAUNCH_VARIANCE * np.eye(3)
     twists, by_keyframes = problem.twists(states)

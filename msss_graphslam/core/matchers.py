@@ -22,9 +22,17 @@ class ScanMatcher(Protocol):
         """Return what ``match`` needs of a scan."""
 
     def match(
-        self, reference: Any, current: Any, initial: Array, initial_covariance: Array
+        self,
+        reference: Any,
+        current: Any,
+        initial: Array,
+        initial_covariance: Array,
+        start: Array | None = None,
     ) -> MatchResult:
-        """Return the displacement of the current scan in the reference scan."""
+        """Return the displacement of the current scan in the reference scan.
+
+        ``start`` (3,) is what an earlier match of the two has found.
+        """
 
 
 class SpicMatcher:
@@ -38,9 +46,14 @@ class SpicMatcher:
         return scan
 
     def match(
-        self, reference: Scan, current: Scan, initial: Array, initial_covariance: Array
+        self,
+        reference: Scan,
+        current: Scan,
+        initial: Array,
+        initial_covariance: Array,
+        start: Array | None = None,  # noqa: ARG002
     ) -> MatchResult:
-        """Match by ``spic.match``."""
+        """Match by ``spic.match``; the paper starts from ``initial``."""
         return spic.match(
             reference.points,
             reference.covariances,
@@ -63,7 +76,12 @@ class LineMatcher:
         return line_features(scan.points, scan.covariances, point_slips(scan))
 
     def match(
-        self, reference: Any, current: Any, initial: Array, initial_covariance: Array
+        self,
+        reference: Any,
+        current: Any,
+        initial: Array,
+        initial_covariance: Array,
+        start: Array | None = None,
     ) -> MatchResult:
         """Match by ``match_lines``."""
-        return match_lines(reference, current, initial, initial_covariance, self._config)
+        return match_lines(reference, current, initial, initial_covariance, self._config, start)

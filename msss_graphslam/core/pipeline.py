@@ -52,6 +52,8 @@ class Pipeline:
             self._process_in_order(ordered)
         self._reckon(self._dead_reckoning.start())
         self._add(self._scans.finish())
+        # What comes needs the memory of the graph that has grown so far.
+        del self._slam
         return self._logbook.finish(progress)
 
     def _process_in_order(self, measurement: Measurement) -> None:

@@ -44,19 +44,27 @@ def match_lines(
     initial: Array,
     initial_covariance: Array,
     config: Matching,
+    start: Array | None = None,
 ) -> MatchResult:
     """Align ``current`` with ``reference`` from the displacement ``initial`` (3,).
 
     Aligns both ways, each scan once being the lines: the two answers must agree, and their mean is
     the result. A direction in which the scans have no structure keeps ``initial`` and gets a wide
-    covariance. ``initial_covariance`` (3, 3) sets how far off the pairs are looked for.
+    covariance. ``initial_covariance`` (3, 3) sets how far off the pairs are looked for. The search
+    begins at ``start`` (3,), where an earlier match of the same scans ended, if there is one.
     """
     if reference is None or current is None:
         return MatchResult(initial, initial_covariance, "too_few_points")
-    forward = _Alignment(reference, current, initial, initial_covariance, config)
+    start = initial if start is None else start
+    forward = _Alignment(reference, current, initial, initial_covariance, config, start)
     turned = inverse_jacobian(initial)
     backward = _Alignment(
-        current, reference, inverse(initial), turned @ initial_covariance @ turned.T, config
+        current,
+        reference,
+        inverse(initial),
+        turned @ initial_covariance @ turned.T,
+        config,
+        inverse(start),
     )
     backward_pose = inverse(backward.pose)
     difference = backward_pose - forward.pose
@@ -84,6 +92,7 @@ class _Alignment:
         initial: Array,
         initial_covariance: Array,
         config: Matching,
+        start: Array,
     ) -> None:
         self._lines = lines
         self._supported = (2.0 * lines.reach) ** 2
@@ -92,7 +101,7 @@ class _Alignment:
         self._covariances = moving.covariances[moving.flat]
         self._initial = initial
         self._prior = np.asarray(np.linalg.inv(initial_covariance))
-        self.pose = np.array(initial, dtype=float)
+        self.pose = np.array(start, dtype=float)
         self.overlap = 0.0
         self.scale = 1.0
         self._slips = moving.slips[moving.flat]

@@ -17,6 +17,7 @@ from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.compounding import between, wrap
 from msss_graphslam.core.graph_construction import matched
+from msss_graphslam.core.known_places import KNOWN_BETTER, hung_again
 from msss_graphslam.core.matchers import ScanMatcher
 from msss_graphslam.core.scan_correction import corrected_scan
 from msss_graphslam.core.trajectory_correction import closed_form
@@ -26,6 +27,9 @@ __all__ = ["Refined", "refine", "whole_graph"]
 
 DOUBT = 7.81
 """Squared Mahalanobis distance that 5 % of true displacements exceed (three numbers)."""
+
+SETTLED = ("shape_differs", KNOWN_BETTER)
+"""Refusals that another layout does not change, or that no match is to change."""
 
 UNCERTAINTY = np.diag([0.15**2, 0.15**2, 0.02**2])
 """How far off a pair's displacement may still be before it is matched again (3, 3)."""
@@ -65,9 +69,20 @@ def refine(
         edges.append(_again(edge, layout, poses) if _doubtful(edge, poses) else edge)
         if number % REPORTED == 0:
             progress(number / len(constraints))
+    edges = _held(constraints, edges)
     back_end = whole_graph(poses, edges, config, divides=True)
     progress(1.0)
     return Refined(back_end.poses(), back_end, edges)
+
+
+def _held(before: Sequence[Constraint], after: Sequence[Constraint]) -> list[Constraint]:
+    """Return the constraints; a scan that has lost a match hangs on its predecessor again."""
+    lost = {
+        old.second
+        for old, new in zip(before, after, strict=True)
+        if old.accepted and not new.accepted
+    }
+    return [hung_again([edge])[0] if edge.second in lost else edge for edge in after]
 
 
 def whole_graph(
@@ -105,7 +120,7 @@ class _Layout:
 
 def _doubtful(constraint: Constraint, poses: Array) -> bool:
     """Whether a match was refused, or does not fit the poses."""
-    if constraint.kind is ConstraintKind.ODOMETRY or constraint.refusal == "shape_differs":
+    if constraint.kind is ConstraintKind.ODOMETRY or constraint.refusal in SETTLED:
         return False
     error = between(poses[constraint.first], poses[constraint.second]) - constraint.relative_pose
     error[2] = wrap(error[2])

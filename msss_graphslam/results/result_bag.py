@@ -21,8 +21,10 @@ from msss_graphslam.core.compounding import (
     inverse,
     wrap,
 )
-from msss_graphslam.core.types import Array, Estimate, Keyframe, Odometry, Stamps, Trajectory
+from msss_graphslam.core.types import Array, Estimate, Keyframe, Stamps, Trajectory
 from msss_graphslam.messages import encoding
+from msss_graphslam.messages.encoding import batches, serialised
+from msss_graphslam.messages.topics import OUTPUTS
 from msss_graphslam.recordings.typestore import make
 from msss_graphslam.recordings.writer import BagWriter
 from msss_graphslam.results.record import RunRecord
@@ -32,8 +34,10 @@ __all__ = ["write_result_bag"]
 _SHORTEST_PERIOD_NS = 200_000_000
 _PLANAR = [0, 1, 5]
 
+_TYPES = {topic.absolute: topic.type_name for topic in OUTPUTS}
+
 _Message = tuple[int, str, Any]
-"""Stamp [ns], topic, message."""
+"""Stamp [ns], topic, message or its bytes."""
 
 
 def write_result_bag(path: Path, record: RunRecord) -> None:
@@ -42,18 +46,21 @@ def write_result_bag(path: Path, record: RunRecord) -> None:
     streams = (_standing(record), _moving(estimate), _scans(record))
     with BagWriter(path) as bag:
         for stamp, topic, message in heapq.merge(*streams, key=lambda entry: entry[0]):
-            bag.write(topic, message, stamp)
+            if isinstance(message, bytes):
+                bag.write_raw(topic, _TYPES[topic], message, stamp, stamp)
+            else:
+                bag.write(topic, message, stamp)
 
 
 def _standing(record: RunRecord) -> Iterator[_Message]:
     estimate, grid = record.estimate, record.grid
     start = int(estimate.trajectory.stamps_ns[0])
     keyframes = record.keyframe_trajectory
-    yield start, "/graph/keyframes", encoding.path(make, keyframes)
-    markers = encoding.graph_markers(make, start, keyframes.planar, estimate.constraints)
+    yield start, "/graph/keyframes", serialised.path(keyframes)
+    markers = serialised.graph_markers(start, keyframes.planar, estimate.constraints)
     yield start, "/graph/markers", markers
-    yield start, "/path", encoding.path(make, _thinned(estimate.trajectory))
-    dead_reckoning = encoding.path(make, _thinned(estimate.dead_reckoning), "odom")
+    yield start, "/path", serialised.path(_thinned(estimate.trajectory))
+    dead_reckoning = serialised.path(_thinned(estimate.dead_reckoning), "odom")
     yield start, "/path/dead_reckoning", dead_reckoning
     yield start, "/map/points", encoding.map_cloud(make, start, record.points)
     cells = encoding.occupancy_grid(make, start, grid.occupancy, grid.resolution, grid.origin)
@@ -62,22 +69,30 @@ def _standing(record: RunRecord) -> Iterator[_Message]:
 
 def _moving(estimate: Estimate) -> Iterator[_Message]:
     """Yield dead reckoning, the corrected pose where its covariance is known, and both frames."""
-    covariances = _beam_covariances(estimate.keyframes)
-    twists = _twists(estimate.dead_reckoning)
-    odom_in_map = carried_over(estimate.trajectory.poses, estimate.dead_reckoning.poses)
-    for row in _thinned_rows(estimate.trajectory.stamps_ns):
-        stamp = int(estimate.trajectory.stamps_ns[row])
-        corrected = estimate.trajectory.poses[row]
-        reckoned = estimate.dead_reckoning.poses[row]
-        odometry = Odometry(stamp, reckoned, np.zeros((6, 6)), twists[row], np.zeros((6, 6)))
-        yield stamp, "/odom", encoding.odometry(make, odometry)
-        if stamp in covariances:
-            yield stamp, "/pose", encoding.pose(make, stamp, corrected, covariances[stamp])
-        transforms = [
-            encoding.transform(make, stamp, odom_in_map[row], "map", "odom"),
-            encoding.transform(make, stamp, reckoned, "odom", "base_link"),
-        ]
-        yield stamp, "/tf", encoding.tf_message(make, transforms)
+    rows = _thinned_rows(estimate.trajectory.stamps_ns)
+    stamps, corrected = estimate.trajectory.stamps_ns[rows], estimate.trajectory.poses[rows]
+    reckoned = Trajectory(stamps, estimate.dead_reckoning.poses[rows])
+    odometry = batches.odometries(reckoned, _twists(estimate.dead_reckoning)[rows])
+    odom_in_map = carried_over(corrected, reckoned.poses)
+    frames = [(odom_in_map, "map", "odom"), (reckoned.poses, "odom", "base_link")]
+    poses = _known_poses(Trajectory(stamps, corrected), estimate.keyframes)
+    moved = zip(stamps.tolist(), odometry, batches.transforms(stamps, frames), strict=True)
+    for stamp, odom, transforms in moved:
+        yield stamp, "/odom", odom
+        if stamp in poses:
+            yield stamp, "/pose", poses[stamp]
+        yield stamp, "/tf", transforms
+
+
+def _known_poses(corrected: Trajectory, keyframes: tuple[Keyframe, ...]) -> dict[int, bytes]:
+    """Return the corrected pose by stamp, as a message, where its covariance is known."""
+    covariances = _beam_covariances(keyframes)
+    stamps = corrected.stamps_ns.tolist()
+    rows = [row for row, stamp in enumerate(stamps) if stamp in covariances]
+    known = Trajectory(corrected.stamps_ns[rows], corrected.poses[rows])
+    spread = np.array([covariances[stamps[row]] for row in rows]).reshape(-1, 3, 3)
+    messages = batches.planar_poses(known, spread)
+    return dict(zip(known.stamps_ns.tolist(), messages, strict=True))
 
 
 def _scans(record: RunRecord) -> Iterator[_Message]:

@@ -88,3 +88,22 @@ def test_the_oracle_of_these_tests_is_what_it_says() -> None:
     off = edge.relative_pose - between(POSES[1], POSES[2])
     off[2] = wrap(off[2])
     assert off @ np.linalg.inv(SPREAD + LAYOUT) @ off == pytest.approx(7.0)
+
+
+def test_what_has_not_moved_is_judged_as_if_measured_again() -> None:
+    """Closures come one by one while only some keyframes move."""
+    review, edges, steps = ClosureReview(BOUND), list[Constraint](), [0.0, 5.0, 5.0, 5.0, 0.0]
+    for number, metres in enumerate(steps):
+        edges.append(closure(0.5 * BOUND, *((0, 1), (1, 2), (0, 2))[number % 3]))
+        review.add(edges[-1:])
+        verdict = review.judge(moved(POSES, metres))
+        assert verdict.readmitted == ()
+        assert verdict.withdrawn == ((0, 1) if number == PATIENCE else ())
+
+
+def test_poses_changed_in_place_are_seen() -> None:
+    review, poses = reviewed(closure(0.0)), POSES.copy()
+    assert review.judge(poses) == NOTHING
+    poses[1, 0] += 5.0
+    verdicts = [review.judge(poses) for _ in range(PATIENCE)]
+    assert verdicts[-1] == Verdict((0,), ())

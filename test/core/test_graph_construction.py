@@ -31,7 +31,14 @@ class RecordingMatcher:
     def prepare(self, scan: Scan) -> Scan:
         return scan
 
-    def match(self, reference: Any, current: Any, initial: Array, spread: Array) -> MatchResult:
+    def match(
+        self,
+        reference: Any,
+        current: Any,
+        initial: Array,
+        spread: Array,
+        start: Array | None = None,  # noqa: ARG002
+    ) -> MatchResult:
         self.asked.append((reference, current, initial, spread))
         pose = np.full(3, float(len(self.asked)))
         return MatchResult(pose, 0.5 * np.eye(3), self._refusal, {"overlap": 0.8})

@@ -74,7 +74,14 @@ class Refusing:
     def prepare(self, scan: Scan) -> Scan:
         return scan
 
-    def match(self, reference: Any, current: Any, initial: Array, spread: Array) -> MatchResult:  # noqa: ARG002
+    def match(
+        self,
+        reference: Any,  # noqa: ARG002
+        current: Any,  # noqa: ARG002
+        initial: Array,
+        spread: Array,
+        start: Array | None = None,  # noqa: ARG002
+    ) -> MatchResult:
         self.asked += 1
         return MatchResult(initial, spread, "too_little_overlap")
 

@@ -183,3 +183,24 @@ def test_without_pairs_dead_reckoning_stands() -> None:
     for _ in range(5):
         states[1:] += posed.linearised(states, REACH).solution()
     np.testing.assert_allclose(posed.twists(states)[0], 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("together", [1, 2, COUNT])
+def test_parts_change_what_is_made_when_and_nothing_else(
+    together: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = problem().linearised(rough(), REACH).solution()
+    monkeypatch.setattr(joint_problem, "TOGETHER", together)
+    np.testing.assert_allclose(problem().linearised(rough(), REACH).solution(), whole, atol=1e-12)
+
+
+def test_what_is_let_go_is_had_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    posed, work = problem(), Work(monkeypatch)
+    before = posed.linearised(rough(), REACH).solution()
+    bent = work.bent
+    posed.forget()
+    moved = rough()
+    moved[2, 0] += 1.0
+    posed.linearised(moved, REACH)
+    assert work.bent > bent + 2
+    np.testing.assert_allclose(posed.linearised(rough(), REACH).solution(), before, atol=1e-9)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from synthetic_scans import basin
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between
+from msss_graphslam.core.known_places import KNOWN_BETTER
+from msss_graphslam.core.match_result import MatchResult
 from msss_graphslam.core.matchers import LineMatcher
 from msss_graphslam.core.refinement import DOUBT, KEPT, REPORTED, Refined, refine
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
@@ -133,3 +136,41 @@ def test_progress_is_told_now_and_then_and_at_the_end() -> None:
     assert told == sorted(told)
     assert told[-1] == 1.0
     assert 2 < len(told) <= len(graph()) + 1
+
+
+def located() -> list[Constraint]:
+    """The last keyframe hangs on loops alone."""
+    return [
+        replace(entry, refusal=KNOWN_BETTER) if (entry.first, entry.second) == (3, 4) else entry
+        for entry in graph()
+    ]
+
+
+def test_what_a_known_place_leaves_out_stays_out() -> None:
+    constraints, matcher = located(), Counting()
+    found = refined(constraints, matcher=matcher)
+    assert all(new is old for new, old in zip(found.constraints, constraints, strict=True))
+    assert matcher.prepared == []
+
+
+class Refusing(Counting):
+    """Finds no match at all."""
+
+    def match(self, *arguments: Any) -> MatchResult:
+        return replace(super().match(*arguments), refusal="too_little_overlap")
+
+
+def test_a_scan_that_loses_a_match_hangs_on_its_predecessor_again() -> None:
+    """Also if it has lost all that held it."""
+    wrong = [
+        replace(entry, relative_pose=entry.relative_pose + np.array([5.0, 0.0, 0.0]))
+        if entry.second == 4 and entry.accepted
+        else entry
+        for entry in located()
+    ]
+    found = refined(wrong, matcher=Refusing())
+    ends = {(entry.first, entry.second) for entry in found.constraints if entry.accepted}
+    assert ends == {
+        (first, second) for first, second in combinations(range(5), 2) if second < 4
+    } | {(3, 4)}
+    np.testing.assert_allclose(found.poses, TRUTH, atol=1e-6)

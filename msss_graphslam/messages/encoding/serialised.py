@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages that grow with the mission, made as bytes.
 
-An object for each of ten thousand poses takes fifty times as long as their numbers written in one
+An object for each of ten thousand poses takes tens of times as long as their numbers in one
 piece. A test compares the bytes with those of the same message made of objects.
 """
 
@@ -15,7 +15,7 @@ from msss_graphslam.messages.encoding.cdr import CdrWriter
 from msss_graphslam.messages.encoding.graph import MARKERS, MarkerStyle, marker_points
 from msss_graphslam.messages.frames import MAP
 
-__all__ = ["graph_markers", "path"]
+__all__ = ["graph_markers", "path", "quaternions"]
 
 _NANOSECONDS = 1_000_000_000
 _STAMP_AND_LENGTH = 12
@@ -61,13 +61,13 @@ def _rows(trajectory: Trajectory, frame: bytes) -> np.ndarray[tuple[int], np.dty
     fields = [("pose", "<f8", 7), ("stamp", "<u4", 2), ("length", "<u4"), ("frame", f"S{space}")]
     rows = np.zeros(len(trajectory.stamps_ns), dtype=fields)
     rows["pose"][:, :3] = trajectory.poses[:, :3]
-    rows["pose"][:, 3:] = _quaternions(trajectory.poses[:, 3:])
+    rows["pose"][:, 3:] = quaternions(trajectory.poses[:, 3:])
     rows["stamp"][:-1] = np.stack(np.divmod(trajectory.stamps_ns[1:], _NANOSECONDS), axis=-1)
     rows["length"], rows["frame"] = len(frame), frame
     return rows
 
 
-def _quaternions(angles: Array) -> Array:
+def quaternions(angles: Array) -> Array:
     """Return x, y, z, w (n, 4) of roll, pitch, yaw (n, 3) [rad]; see ``primitives.quaternion``."""
     cr, cp, cy = np.cos(angles.T / 2.0)
     sr, sp, sy = np.sin(angles.T / 2.0)
