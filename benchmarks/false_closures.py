@@ -15,12 +15,12 @@ from benchmarks.flights import flown
 from benchmarks.missions import Mission
 from benchmarks.robustness_page import Trial, robustness_page
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.dead_reckoning import DeadReckoning
-from msss_graphslam.core.front_end import FrontEnd
-from msss_graphslam.core.guarded_back_end import CONTRADICTS, GuardedBackEnd
+from msss_graphslam.core.graph.front_end import FrontEnd
+from msss_graphslam.core.graph.guarded_back_end import CONTRADICTS, GuardedBackEnd
 from msss_graphslam.core.logbook import Logbook
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Array, Beam, ConstraintKind, Measurement, Scan
 from msss_graphslam.simulation.echo_model import EchoKind
 

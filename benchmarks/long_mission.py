@@ -48,8 +48,8 @@ from the truth, anchored at the start; online is what a subscriber got at the ti
 {growth}
 
 Where a place holds many keyframes already and the scan is found there again, it is known
-(`core/known_places.py`): the scan is located by the keyframes there, and no later scan is matched
-with it. So a scan is compared with a bounded number of others and tied to at most
+(`core/graph/known_places.py`): the scan is located by the keyframes there, and no later scan is
+matched with it. So a scan is compared with a bounded number of others and tied to at most
 `association.most` of them, the smoother works on a part of the graph that does not grow, and the
 front end keeps no points of it. What still grows is small: reading all poses out of the graph, and
 the measured scans, which the refinement in the end makes anew.

@@ -17,10 +17,10 @@ import numpy as np
 from benchmarks.long_simulation import LAUNCH_NS
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.groups import Segmentation, Sonar
-from msss_graphslam.core import scan_generator
-from msss_graphslam.core.beam_segmentation import BeamSegmenter
+from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.core.scans import scan_generator
 from msss_graphslam.core.types import (
     Array,
     Beam,

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
-from msss_graphslam.core.front_end import FrontEnd
-from msss_graphslam.core.joint_smoothing import Smoothed
-from msss_graphslam.core.matchers import ScanMatcher
-from msss_graphslam.core.motion_feedback import MotionFeedback
-from msss_graphslam.core.refinement import Refined, whole_graph
+from msss_graphslam.core.graph.front_end import FrontEnd
+from msss_graphslam.core.graph.refinement import Refined, whole_graph
+from msss_graphslam.core.matching.matchers import ScanMatcher
+from msss_graphslam.core.scans.motion_feedback import MotionFeedback
+from msss_graphslam.core.smoothing.joint_smoothing import Smoothed
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan, TwistError
 
 __all__ = ["NoFeedback", "refine", "smooth", "without_odometry"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from benchmarks import neutral
 from benchmarks.missions import Changes
-from msss_graphslam.core.matchers import SpicMatcher
+from msss_graphslam.core.matching.matchers import SpicMatcher
 from msss_graphslam.core.recipes import Recipe
 
 __all__ = ["PARTS", "WHOLE", "Part", "part_named"]
@@ -63,17 +63,17 @@ PARTS = (
     Part(
         "motion feedback",
         "scans laid out as dead reckoning says",
-        replacements=((f"{_CORE}.front_end.MotionFeedback", neutral.NoFeedback),),
+        replacements=((f"{_CORE}.graph.front_end.MotionFeedback", neutral.NoFeedback),),
     ),
     Part(
         "repeated matching",
         "consecutive scans matched once",
-        replacements=((f"{_CORE}.front_end.ROUNDS", 1),),
+        replacements=((f"{_CORE}.graph.front_end.ROUNDS", 1),),
     ),
     Part(
         "odometry edges",
         "no odometry beside an accepted match",
-        replacements=((f"{_CORE}.front_end.FrontEnd.add_scan", neutral.without_odometry),),
+        replacements=((f"{_CORE}.graph.front_end.FrontEnd.add_scan", neutral.without_odometry),),
     ),
     Part("robust kernel", "least squares", values=(("back_end.robust_width", 0.0),)),
     Part(

@@ -14,7 +14,7 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between, compose, transform_points
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.core.types import (
     Array,
     Constraint,

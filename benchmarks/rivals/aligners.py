@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import rotation, transform_points
-from msss_graphslam.core.matchers import ScanMatcher
+from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.types import Array, Scan
 
 __all__ = ["Aligner", "Gicp", "Ours", "PlainIcp"]

@@ -12,8 +12,8 @@ import numpy as np
 
 from benchmarks.tables import Table
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
-from msss_graphslam.core.back_end import LAUNCH_VARIANCE, BackEnd
 from msss_graphslam.core.compounding import compose, rotation
+from msss_graphslam.core.graph.back_end import LAUNCH_VARIANCE, BackEnd
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Estimate
 from msss_graphslam.offline.estimation import Progress
 

@@ -13,7 +13,7 @@ from benchmarks.rivals.scan_pairs import ScanPair, Start, starts
 from benchmarks.tables import Table
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import between
-from msss_graphslam.core.matchers import LineMatcher, SpicMatcher
+from msss_graphslam.core.matching.matchers import LineMatcher, SpicMatcher
 from msss_graphslam.core.types import Array, Scan
 from msss_graphslam.offline.estimation import Progress
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from benchmarks.tables import Table
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.beam_segmentation import BeamSegmenter
-from msss_graphslam.core.scan_generator import BLOCK
+from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter
+from msss_graphslam.core.scans.scan_generator import BLOCK
 from msss_graphslam.core.types import Array, Beam, Scan, Trajectory
 from msss_graphslam.evaluation.errors import interpolate
 from msss_graphslam.recordings.reader import Recording

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.trajectory_correction import Solver, correct_motion
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.trajectory_correction import Solver, correct_motion
 from msss_graphslam.core.types import Array, Scan, Stamps, Trajectory
 
 __all__ = ["BeamLog"]

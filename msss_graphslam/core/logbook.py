@@ -8,15 +8,15 @@ from contextlib import nullcontext
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.bare_scans import LaidOut, bare
 from msss_graphslam.core.beam_log import BeamLog
-from msss_graphslam.core.joint_pairs import first_reach, pairs_of
-from msss_graphslam.core.joint_smoothing import Reach, Smoothed, smooth
-from msss_graphslam.core.matchers import ScanMatcher
-from msss_graphslam.core.motion_feedback import persistence_of
+from msss_graphslam.core.graph.refinement import refine, whole_graph
+from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.refinement import refine, whole_graph
-from msss_graphslam.core.scan_correction import corrected_scans
+from msss_graphslam.core.scans.bare_scans import LaidOut, bare
+from msss_graphslam.core.scans.motion_feedback import persistence_of
+from msss_graphslam.core.scans.scan_correction import corrected_scans
+from msss_graphslam.core.smoothing.joint_pairs import first_reach, pairs_of
+from msss_graphslam.core.smoothing.joint_smoothing import Reach, Smoothed, smooth
 from msss_graphslam.core.types import (
     Array,
     Constraint,

@@ -7,14 +7,14 @@ from collections.abc import Callable
 from contextlib import nullcontext
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.dead_reckoning import DeadReckoning
-from msss_graphslam.core.graph_slam import GraphSlam
+from msss_graphslam.core.graph.graph_slam import GraphSlam
 from msss_graphslam.core.logbook import Logbook
-from msss_graphslam.core.motion_feedback import persistence_of
 from msss_graphslam.core.online_pose import OnlinePose
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.scan_generator import ScanGenerator
-from msss_graphslam.core.sequencing import Sequencer
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
+from msss_graphslam.core.reckoning.sequencing import Sequencer
+from msss_graphslam.core.scans.motion_feedback import persistence_of
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Estimate, Measurement, Odometry, Scan, Stage
 
 __all__ = ["Pipeline"]

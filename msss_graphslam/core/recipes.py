@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from msss_graphslam.config.groups import Matching
-from msss_graphslam.core.matchers import LineMatcher, ScanMatcher, SpicMatcher
-from msss_graphslam.core.trajectory_correction import Solver, closed_form, nelder_mead
+from msss_graphslam.core.matching.matchers import LineMatcher, ScanMatcher, SpicMatcher
+from msss_graphslam.core.scans.trajectory_correction import Solver, closed_form, nelder_mead
 
 __all__ = ["ESTIMATORS", "Recipe"]
 

@@ -235,7 +235,7 @@ class TwistError:
 class MapCorrection:
     """Where the vehicle was in the middle of the newest scan, in ``map``.
 
-    ``pose`` (3,) with its ``covariance`` (3, 3) at ``stamp_ns``, the moment that a scan knows best.
+    ``pose`` (3,) with its ``covariance`` (3, 3) at ``stamp_ns``, the moment a scan knows best.
     """
 
     stamp_ns: int

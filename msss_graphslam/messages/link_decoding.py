@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from msss_graphslam.core.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import (
     Array,
     Constraint,

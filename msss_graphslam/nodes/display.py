@@ -5,7 +5,7 @@
 from typing import Any
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.mapping import OccupancyGrid, map_points, occupancy_grid
+from msss_graphslam.core.maps.mapping import OccupancyGrid, map_points, occupancy_grid
 from msss_graphslam.core.types import Array, Trajectory
 from msss_graphslam.messages import encoding
 from msss_graphslam.messages.encoding import serialised

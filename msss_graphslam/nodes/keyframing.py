@@ -9,7 +9,7 @@ from time import monotonic
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import GraphPoses, KeyframeReport, MapCorrection, Scan, Stamps
 from msss_graphslam.messages.refusal import Refusal

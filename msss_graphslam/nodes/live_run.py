@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.core.types import Array
 from msss_graphslam.results.record import Cost
 

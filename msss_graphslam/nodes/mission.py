@@ -10,10 +10,10 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.beam_log import BeamLog
-from msss_graphslam.core.guarded_back_end import GuardedBackEnd
+from msss_graphslam.core.graph.guarded_back_end import GuardedBackEnd
 from msss_graphslam.core.logbook import Logbook
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import (
     Array,
     Constraint,

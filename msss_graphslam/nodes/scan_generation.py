@@ -8,7 +8,7 @@ from time import monotonic, perf_counter
 
 import numpy as np
 
-from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Scan
 from msss_graphslam.messages import decoding, encoding, frames, link_decoding, topics
 from msss_graphslam.messages.link_decoding import SettledOdometry

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from msss_graphslam import __version__
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.mapping import map_points, occupancy_grid
+from msss_graphslam.core.maps.mapping import map_points, occupancy_grid
 from msss_graphslam.core.types import Beam, Estimate, Trajectory
 from msss_graphslam.evaluation.assessment import Assessment, assess
 from msss_graphslam.evaluation.summary import summarise

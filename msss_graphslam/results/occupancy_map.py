@@ -8,7 +8,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.results.atomic import write_bytes, write_text
 
 __all__ = ["write_occupancy_map"]

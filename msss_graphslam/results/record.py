@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.core.types import Array, Beam, ConstraintKind, Estimate, Trajectory
 
 __all__ = ["BagInfo", "Cost", "RunRecord", "example_scan"]

@@ -10,7 +10,7 @@ import pytest
 from benchmarks.false_injection import COVARIANCE, FalseClosures, FalseKind
 from benchmarks.robustness_page import Trial, growth_table, robustness_page
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.constraint_defects import defect
+from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.types import Array, Constraint
 
 NODES = 90

@@ -17,7 +17,8 @@ from benchmarks.missions import accuracy
 from benchmarks.parts import PARTS, part_named
 from benchmarks.trials import Trial, estimate_of, results
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core import front_end, logbook, pipeline
+from msss_graphslam.core import logbook, pipeline
+from msss_graphslam.core.graph import front_end
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import ConstraintKind, Estimate

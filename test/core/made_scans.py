@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from synthetic_scans import scan as see
 
-from msss_graphslam.core.scan_generation import lay_out
+from msss_graphslam.core.scans.scan_generation import lay_out
 from msss_graphslam.core.types import Array, Scan
 
 TURN_NS = 10_000_000_000

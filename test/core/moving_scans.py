@@ -8,7 +8,7 @@ import numpy as np
 from synthetic_scans import RANGE_NOISE, _cast, _covariances, basin, corridor
 
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import Array, Scan
 
 BASIN = [np.add(wall, [0.0, 5.0]) for wall in basin(np.random.default_rng(5))]

@@ -9,7 +9,7 @@ import numpy as np
 
 from msss_graphslam.config.groups import DeadReckoning as Config
 from msss_graphslam.core.compounding import wrap
-from msss_graphslam.core.dead_reckoning import DeadReckoning
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
 from msss_graphslam.core.types import (
     Array,
     Beam,

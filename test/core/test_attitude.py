@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numerical_derivatives import jacobian
 from scipy.spatial.transform import Rotation
 
-from msss_graphslam.core.attitude import (
+from msss_graphslam.core.reckoning.attitude import (
     level,
     rate_derivatives,
     rate_matrix,

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import least_squares
 
 from msss_graphslam.config.groups import BackEnd as Config
-from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.compounding import between, compose, compose_jacobians, wrap
-from msss_graphslam.core.constraint_defects import defect
+from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 LEAST_SQUARES = Config(robust_width=0.0)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core import back_end
-from msss_graphslam.core.back_end import READ_AGAIN, READ_EVERY, BackEnd
 from msss_graphslam.core.compounding import between
+from msss_graphslam.core.graph import back_end
+from msss_graphslam.core.graph.back_end import READ_AGAIN, READ_EVERY, BackEnd
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 SPREAD = np.diag([0.02**2, 0.02**2, 0.003**2])

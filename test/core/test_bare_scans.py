@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_mission import estimated
 
-from msss_graphslam.core.bare_scans import LaidOut, bare
+from msss_graphslam.core.scans.bare_scans import LaidOut, bare
 from msss_graphslam.core.types import Scan
 
 LAYOUT = ("motion", "motion_covariances", "points", "covariances")

@@ -7,9 +7,9 @@ import pytest
 
 from msss_graphslam.core.beam_log import BeamLog
 from msss_graphslam.core.compounding import between, compose, wrap
-from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.scan_generation import reckoned_scan
-from msss_graphslam.core.trajectory_correction import Solver, closed_form, nelder_mead
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.trajectory_correction import Solver, closed_form, nelder_mead
 from msss_graphslam.core.types import Array, Scan
 
 COUNT, A_TURN = 130, 40

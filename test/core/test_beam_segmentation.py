@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from msss_graphslam.config.groups import Segmentation, Sonar
-from msss_graphslam.core.beam_segmentation import BeamSegmenter
+from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter
 from msss_graphslam.core.types import Beam
 
 

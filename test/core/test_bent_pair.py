@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, moving_scans
 
-from msss_graphslam.core.bent_pair import FEWEST, Pairing, pairings
-from msss_graphslam.core.bent_scan import BentScan, bend, reckoned_ends
 from msss_graphslam.core.compounding import between, compose
+from msss_graphslam.core.smoothing.bent_pair import FEWEST, Pairing, pairings
+from msss_graphslam.core.smoothing.bent_scan import BentScan, bend, reckoned_ends
 from msss_graphslam.core.types import Array
 
 SECONDS = 10.0

@@ -10,7 +10,7 @@ from moving_scans import BASIN, CORRIDOR, moving_scans
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between, wrap
-from msss_graphslam.core.graph_slam import GraphSlam
+from msss_graphslam.core.graph.graph_slam import GraphSlam
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Array, Scan
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from msss_graphslam.core.closure_review import LAYOUT, PATIENCE, ClosureReview, Verdict
 from msss_graphslam.core.compounding import between, wrap
+from msss_graphslam.core.graph.closure_review import LAYOUT, PATIENCE, ClosureReview, Verdict
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 BOUND = 9.0

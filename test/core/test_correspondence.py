@@ -7,7 +7,7 @@ from scipy.stats import chi2
 from synthetic_scans import basin, scan
 
 from msss_graphslam.core.compounding import compose, rotation, transform_points
-from msss_graphslam.core.correspondence import Pairs, Points, correspondences
+from msss_graphslam.core.matching.correspondence import Pairs, Points, correspondences
 from msss_graphslam.core.types import Array
 
 GATE = float(chi2.ppf(0.95, 2))

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from msss_graphslam.config.groups import Association
 from msss_graphslam.core.compounding import wrap
-from msss_graphslam.core.data_association import Candidate, associate, squared_mahalanobis
-from msss_graphslam.core.shape_matching import shape_descriptor, shape_distance
+from msss_graphslam.core.graph.data_association import Candidate, associate, squared_mahalanobis
+from msss_graphslam.core.matching.shape_matching import shape_descriptor, shape_distance
 from msss_graphslam.core.types import Array
 
 Store = tuple[Array, Array, list[Array]]
@@ -82,7 +82,7 @@ def test_shapes_are_compared_only_inside_the_gate(monkeypatch: pytest.MonkeyPatc
         compared.append(first)
         return shape_distance(first, second)
 
-    monkeypatch.setattr("msss_graphslam.core.data_association.shape_distance", count)
+    monkeypatch.setattr("msss_graphslam.core.graph.data_association.shape_distance", count)
     candidates = associate(poses, covariances, descriptors, *current, Association())
     assert len(compared) == len(candidates) <= 4
     assert all(candidate.index >= 15 for candidate in candidates)

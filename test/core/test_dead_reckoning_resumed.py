@@ -11,7 +11,7 @@ from reckoned import CONFIG, beam, depth, imu, nanoseconds, times, turning
 from same_odometry import said
 
 from msss_graphslam.core.compounding import wrap
-from msss_graphslam.core.dead_reckoning import DeadReckoning
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
 from msss_graphslam.core.types import Inertial, Measurement, Odometry
 
 POSE = np.array([5.0, -3.0, -1.5, 0.02, -0.01, 3.0])

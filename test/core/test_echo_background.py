@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from msss_graphslam.config.groups import Segmentation
-from msss_graphslam.core.echo_background import NoiseFloor, Ringing
+from msss_graphslam.core.echoes.echo_background import NoiseFloor, Ringing
 
 CONFIG = Segmentation()
 RANGES = 0.05 * (np.arange(100) + 0.5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import find_peaks
 
-from msss_graphslam.core.echo_extraction import (
+from msss_graphslam.core.echoes.echo_extraction import (
     find_echoes,
     smooth,
     smoothing_kernel,

@@ -9,8 +9,8 @@ import pytest
 from small_mission import estimated
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core import known_places
-from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.graph import known_places
+from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Constraint, ConstraintKind, GraphPoses, Scan
 

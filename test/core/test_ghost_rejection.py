@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from msss_graphslam.config.groups import Segmentation
-from msss_graphslam.core.ghost_rejection import _connected, _stays, reject_ghosts
+from msss_graphslam.core.echoes.ghost_rejection import _connected, _stays, reject_ghosts
 
 CONFIG = Segmentation()
 BEAMS = 200

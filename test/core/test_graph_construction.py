@@ -7,14 +7,14 @@ from made_scans import standing_scan
 from synthetic_scans import basin
 
 from msss_graphslam.core.compounding import between, between_covariance
-from msss_graphslam.core.data_association import Candidate
-from msss_graphslam.core.graph_construction import (
+from msss_graphslam.core.graph.data_association import Candidate
+from msss_graphslam.core.graph.graph_construction import (
     Node,
     consecutive_constraint,
     loop_constraints,
     odometry_constraint,
 )
-from msss_graphslam.core.match_result import MatchResult
+from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.types import Array, ConstraintKind, Scan
 
 POSES = np.array([[0.0, 0.0, 0.0], [1.0, 0.2, 0.3], [2.0, -0.1, -0.4], [0.1, 0.1, 3.1]])

@@ -13,15 +13,15 @@ from small_mission import estimated, recorded
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.groups import Matching
-from msss_graphslam.core.back_end import BackEnd
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.front_end import FrontEnd
-from msss_graphslam.core.graph_slam import GraphSlam
-from msss_graphslam.core.match_result import MatchResult
-from msss_graphslam.core.matchers import LineMatcher
+from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.front_end import FrontEnd
+from msss_graphslam.core.graph.graph_slam import GraphSlam
+from msss_graphslam.core.graph.refinement import Refined, refine, whole_graph
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.matchers import LineMatcher
 from msss_graphslam.core.recipes import ESTIMATORS, Recipe
-from msss_graphslam.core.refinement import Refined, refine, whole_graph
-from msss_graphslam.core.trajectory_correction import closed_form
+from msss_graphslam.core.scans.trajectory_correction import closed_form
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, GraphPoses, Scan
 
 CONFIGURATION = Configuration()

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from msss_graphslam.config.groups import BackEnd as Config
-from msss_graphslam.core.back_end import BackEnd
-from msss_graphslam.core.closure_review import PATIENCE, ClosureReview, Verdict
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.guarded_back_end import CONTRADICTS, WITHDRAWN, GuardedBackEnd
-from msss_graphslam.core.known_places import KNOWN_BETTER
+from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.closure_review import PATIENCE, ClosureReview, Verdict
+from msss_graphslam.core.graph.guarded_back_end import CONTRADICTS, WITHDRAWN, GuardedBackEnd
+from msss_graphslam.core.graph.known_places import KNOWN_BETTER
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 START = np.array([1.0, -2.0, 0.4])

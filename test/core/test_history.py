@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from msss_graphslam.core.history import DeadReckoningHistory
+from msss_graphslam.core.scans.history import DeadReckoningHistory
 from msss_graphslam.core.types import Array, Odometry
 
 stamp_lists = st.lists(st.integers(0, 1000), min_size=1, max_size=20, unique=True).map(sorted)

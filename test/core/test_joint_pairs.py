@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, BLIND, moving_scans
 
-from msss_graphslam.core.joint_pairs import first_reach, pairs_of, weights_of
+from msss_graphslam.core.smoothing.joint_pairs import first_reach, pairs_of, weights_of
 from msss_graphslam.core.types import Constraint, ConstraintKind
 
 ODOMETRY, CONSECUTIVE, LOOP = ConstraintKind

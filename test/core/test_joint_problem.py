@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, moving_scans
 
-from msss_graphslam.core import bent_scans, joint_problem
-from msss_graphslam.core.bent_pair import Pairing, pairings
-from msss_graphslam.core.bent_scan import BentScan, bend
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.joint_problem import SLACK, JointProblem
-from msss_graphslam.core.motion_feedback import Persistence
+from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.smoothing import bent_scans, joint_problem
+from msss_graphslam.core.smoothing.bent_pair import Pairing, pairings
+from msss_graphslam.core.smoothing.bent_scan import BentScan, bend
+from msss_graphslam.core.smoothing.joint_problem import SLACK, JointProblem
 from msss_graphslam.core.types import Array, Scan
 
 COUNT = 5

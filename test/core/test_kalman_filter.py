@@ -10,8 +10,14 @@ from numerical_derivatives import jacobian
 from textbook_filter import TextbookFilter
 
 from msss_graphslam.config.groups import DeadReckoning
-from msss_graphslam.core.kalman_filter import VELOCITY_ERROR, YAW, KalmanFilter, Z, transition
-from msss_graphslam.core.paired_covariance import SIZE
+from msss_graphslam.core.reckoning.kalman_filter import (
+    VELOCITY_ERROR,
+    YAW,
+    KalmanFilter,
+    Z,
+    transition,
+)
+from msss_graphslam.core.reckoning.paired_covariance import SIZE
 from msss_graphslam.core.types import Array
 
 BIAS = 9

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from msss_graphslam.core.known_places import (
+from msss_graphslam.core.graph.known_places import (
     CLOSURES,
     KEYFRAMES,
     KNOWN_BETTER,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from msss_graphslam.core.line_features import NEIGHBOURS, LineFeatures, line_features
+from msss_graphslam.core.matching.line_features import NEIGHBOURS, LineFeatures, line_features
 from msss_graphslam.core.types import Array
 
 VARIANCE = 0.01

@@ -9,7 +9,7 @@ from estimate_checks import assert_sound
 from small_mission import estimated
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.graph_slam import GraphSlam
+from msss_graphslam.core.graph.graph_slam import GraphSlam
 from msss_graphslam.core.logbook import Logbook
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Array, Estimate, Scan

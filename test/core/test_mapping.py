@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from synthetic_scans import corridor, scan
 
 from msss_graphslam.config.groups import Mapping
-from msss_graphslam.core import mapping
 from msss_graphslam.core.compounding import compose, transform_points, wrap
-from msss_graphslam.core.mapping import OccupancyGrid, map_points, occupancy_grid
+from msss_graphslam.core.maps import mapping
+from msss_graphslam.core.maps.mapping import OccupancyGrid, map_points, occupancy_grid
 from msss_graphslam.core.types import Array, Keyframe, Scan
 
 CONFIG = replace(Mapping(), resolution=0.5, free_width=0.0)

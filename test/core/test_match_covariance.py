@@ -11,10 +11,10 @@ from synthetic_scans import basin, corridor, scan
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import compose, rotation, wrap
-from msss_graphslam.core.line_features import LineFeatures, line_features
-from msss_graphslam.core.match_covariance import MatchedPairs, match_covariance
-from msss_graphslam.core.match_result import MatchResult
-from msss_graphslam.core.point_to_line import match_lines
+from msss_graphslam.core.matching.line_features import LineFeatures, line_features
+from msss_graphslam.core.matching.match_covariance import MatchedPairs, match_covariance
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.point_to_line import match_lines
 from msss_graphslam.core.types import Array
 
 CONFIG = Matching()

@@ -12,8 +12,8 @@ from small_mission import estimated
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between
-from msss_graphslam.core.front_end import FrontEnd
-from msss_graphslam.core.match_result import MatchResult
+from msss_graphslam.core.graph.front_end import FrontEnd
+from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Array, ConstraintKind, Scan
 

@@ -5,7 +5,7 @@ import pytest
 
 from msss_graphslam.config.groups import DeadReckoning
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.motion_feedback import (
+from msss_graphslam.core.scans.motion_feedback import (
     MotionFeedback,
     Persistence,
     offset_motion,

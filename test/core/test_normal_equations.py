@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from msss_graphslam.core.normal_equations import NormalEquations
+from msss_graphslam.core.smoothing.normal_equations import NormalEquations
 from msss_graphslam.core.types import Array
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from msss_graphslam.core.compounding import between, compose, compose_jacobians
-from msss_graphslam.core.odometry_chain import OdometryChain
+from msss_graphslam.core.graph.odometry_chain import OdometryChain
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 NONE = np.zeros((3, 3))

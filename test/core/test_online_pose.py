@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from msss_graphslam.core.compounding import between, compose, wrap
-from msss_graphslam.core.motion_feedback import Persistence
 from msss_graphslam.core.online_pose import OnlinePose, _drift_covariance
-from msss_graphslam.core.scan_generation import motion_covariances
+from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.scan_generation import motion_covariances
 from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
 
 PERIOD_NS = 40_000_000

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import find_peaks, peak_widths
 
-from msss_graphslam.core.peaks import crossings, prominent_peaks
+from msss_graphslam.core.echoes.peaks import crossings, prominent_peaks
 
 SEEDS = range(200)
 

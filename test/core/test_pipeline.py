@@ -11,7 +11,7 @@ from small_mission import LAUNCH_NS, estimated, position_errors, recorded, run, 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.scan_generator import BLOCK
+from msss_graphslam.core.scans.scan_generator import BLOCK
 from msss_graphslam.core.types import (
     Beam,
     ConstraintKind,

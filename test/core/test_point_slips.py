@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from moving_scans import BASIN, moving_scans
 
-from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.point_slips import point_slips
-from msss_graphslam.core.scan_generation import lay_out
+from msss_graphslam.core.matching.point_slips import point_slips
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.scan_generation import lay_out
 from msss_graphslam.core.types import Array, Scan
 
 TWIST = np.array([[4e-4, 1e-4, 2e-5], [1e-4, 2e-4, -1e-5], [2e-5, -1e-5, 9e-6]])

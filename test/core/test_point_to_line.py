@@ -15,9 +15,9 @@ from msss_graphslam.core.compounding import (
     transform_points,
     wrap,
 )
-from msss_graphslam.core.line_features import LineFeatures, line_features
-from msss_graphslam.core.match_result import MatchResult
-from msss_graphslam.core.point_to_line import match_lines
+from msss_graphslam.core.matching.line_features import LineFeatures, line_features
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.point_to_line import match_lines
 from msss_graphslam.core.types import Array
 
 CONFIG = Matching()

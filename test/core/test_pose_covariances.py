@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_matrix
 
-from msss_graphslam.core.pose_covariances import pose_covariances
+from msss_graphslam.core.smoothing.pose_covariances import pose_covariances
 from msss_graphslam.core.types import Array
 
 

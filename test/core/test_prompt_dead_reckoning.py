@@ -10,8 +10,8 @@ from reckoned import CONFIG, START_NS, beam, depth, imu, nanoseconds, times
 from same_odometry import said
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.dead_reckoning import DeadReckoning
-from msss_graphslam.core.prompt_dead_reckoning import PromptDeadReckoning
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
+from msss_graphslam.core.reckoning.prompt_dead_reckoning import PromptDeadReckoning
 from msss_graphslam.core.types import (
     Beam,
     BodyVelocity,

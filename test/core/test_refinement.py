@@ -12,10 +12,10 @@ from synthetic_scans import basin
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between
-from msss_graphslam.core.known_places import KNOWN_BETTER
-from msss_graphslam.core.match_result import MatchResult
-from msss_graphslam.core.matchers import LineMatcher
-from msss_graphslam.core.refinement import DOUBT, KEPT, REPORTED, Refined, refine
+from msss_graphslam.core.graph.known_places import KNOWN_BETTER
+from msss_graphslam.core.graph.refinement import DOUBT, KEPT, REPORTED, Refined, refine
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.matchers import LineMatcher
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
 
 CONFIGURATION = Configuration()

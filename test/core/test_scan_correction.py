@@ -8,10 +8,10 @@ import pytest
 from small_mission import estimated
 
 from msss_graphslam.core.compounding import between, compose, transform_points
-from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.scan_correction import correct_scan, corrected_scans
-from msss_graphslam.core.scan_generation import motion_covariances
-from msss_graphslam.core.trajectory_correction import Solver, closed_form, nelder_mead
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.scan_correction import correct_scan, corrected_scans
+from msss_graphslam.core.scans.scan_generation import motion_covariances
+from msss_graphslam.core.scans.trajectory_correction import Solver, closed_form, nelder_mead
 from msss_graphslam.core.types import Array, Scan, TwistError
 
 ERROR = TwistError(np.array([0.03, -0.02, 0.01]), np.diag([1e-5, 2e-5, 1e-7]))

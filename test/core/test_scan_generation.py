@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from msss_graphslam.config.groups import Sonar
-from msss_graphslam.core.attitude import rotation_matrix
 from msss_graphslam.core.compounding import between, compose, transform_points, wrap
-from msss_graphslam.core.history import DeadReckoningHistory, Turn
-from msss_graphslam.core.motion_feedback import offset_motion
-from msss_graphslam.core.scan_generation import (
+from msss_graphslam.core.reckoning.attitude import rotation_matrix
+from msss_graphslam.core.scans.history import DeadReckoningHistory, Turn
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.scan_generation import (
     generate_scan,
     lay_out,
     motion_covariances,

@@ -10,8 +10,8 @@ import pytest
 from small_mission import seconds_of, until
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.dead_reckoning import DeadReckoning
-from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Odometry, Scan
 
 CONFIGURATION = Configuration()

@@ -11,7 +11,7 @@ from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from msss_graphslam.config.groups import Segmentation, Sonar
-from msss_graphslam.core.beam_segmentation import BeamSegmenter, reject_ghosts
+from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter, reject_ghosts
 from msss_graphslam.core.types import Beam
 
 DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data"

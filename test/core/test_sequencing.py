@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from msss_graphslam.core.sequencing import Sequencer
+from msss_graphslam.core.reckoning.sequencing import Sequencer
 from msss_graphslam.core.types import Beam, Depth, Inertial, Measurement
 
 SECOND = 10**9

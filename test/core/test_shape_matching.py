@@ -10,7 +10,7 @@ from synthetic_scans import basin, scan
 
 from msss_graphslam.config.groups import Association
 from msss_graphslam.core.compounding import compose, rotation
-from msss_graphslam.core.shape_matching import shape_descriptor, shape_distance
+from msss_graphslam.core.matching.shape_matching import shape_descriptor, shape_distance
 from msss_graphslam.core.types import Array
 
 

@@ -8,8 +8,8 @@ from synthetic_scans import basin, corridor, scan
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import between, compose, inverse, wrap
-from msss_graphslam.core.match_result import MatchResult
-from msss_graphslam.core.spic import match
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.spic import match
 from msss_graphslam.core.types import Array
 
 PLACE = np.array([7.8, 0.0, 1.6])

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from msss_graphslam.core.compounding import between, compose, wrap
-from msss_graphslam.core.trajectory_correction import (
+from msss_graphslam.core.scans.trajectory_correction import (
     Solver,
     closed_form,
     compose_corrected,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from msss_graphslam.config.groups import Scanning
 from msss_graphslam.core.compounding import wrap
-from msss_graphslam.core.history import Turn, TurnDetector
+from msss_graphslam.core.scans.history import Turn, TurnDetector
 from msss_graphslam.core.types import Array, Reading
 
 PERIOD_NS = 50_000_000

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, BLIND, moving_scans
 
-from msss_graphslam.core.motion_feedback import Persistence
-from msss_graphslam.core.normal_equations import NormalEquations
-from msss_graphslam.core.twist_chain import TwistChain, durations_of
+from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.smoothing.normal_equations import NormalEquations
+from msss_graphslam.core.smoothing.twist_chain import TwistChain, durations_of
 from msss_graphslam.core.types import Array, Scan
 
 LASTING, NEW = Persistence(20.0, np.diag(BLIND)), Persistence(20.0, np.zeros(3))

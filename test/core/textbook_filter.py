@@ -6,7 +6,7 @@ import numpy as np
 from numerical_derivatives import jacobian
 
 from msss_graphslam.config.groups import DeadReckoning
-from msss_graphslam.core.kalman_filter import transition
+from msss_graphslam.core.reckoning.kalman_filter import transition
 from msss_graphslam.core.types import Array
 
 SIZE, YAW, BIAS = 10, 5, 9

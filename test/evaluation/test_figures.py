@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from synthetic_run import synthetic_run, without_keyframes
 
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.core.types import Beam
 from msss_graphslam.evaluation.assessment import assess
 from msss_graphslam.evaluation.figures.closures import closures

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from made_scans import BEAMS, standing_scan
 from synthetic_scans import corridor
 
-from msss_graphslam.core.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import (
     Constraint,
     ConstraintKind,

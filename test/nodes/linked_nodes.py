@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.prompt_dead_reckoning import PromptDeadReckoning
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.reckoning.prompt_dead_reckoning import PromptDeadReckoning
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, KeyframeReport, MapCorrection, Measurement, Scan
 from msss_graphslam.messages import encoding, link_decoding
 from msss_graphslam.nodes.keyframing import Keyframing

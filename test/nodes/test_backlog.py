@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from msss_graphslam.core.scan_generation import reckoned_scan
+from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import Scan
 from msss_graphslam.nodes.replay.backlog import Backlog
 

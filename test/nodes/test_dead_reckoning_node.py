@@ -16,7 +16,7 @@ from nodes.fed_nodes import START_NS, Fed, dive, fed, measurement_of
 from nodes.processes import wait_until
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.prompt_dead_reckoning import PromptDeadReckoning
+from msss_graphslam.core.reckoning.prompt_dead_reckoning import PromptDeadReckoning
 from msss_graphslam.core.types import MapCorrection, Odometry, Trajectory, TwistError
 from msss_graphslam.messages import decoding, encoding, link_decoding, topics
 from msss_graphslam.messages.topics import Topic

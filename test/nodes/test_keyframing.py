@@ -12,7 +12,7 @@ from nodes.linked_nodes import LinkedNodes, scans_of
 from small_mission import recorded
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.front_end import FrontEnd
+from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import GraphPoses, KeyframeReport, MapCorrection, Scan
 from msss_graphslam.messages.refusal import Refusal

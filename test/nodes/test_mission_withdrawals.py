@@ -8,7 +8,7 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.guarded_back_end import CONTRADICTS, WITHDRAWN
+from msss_graphslam.core.graph.guarded_back_end import CONTRADICTS, WITHDRAWN
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import Constraint, ConstraintKind, KeyframeReport, TwistError
 from msss_graphslam.nodes.mission import Mission

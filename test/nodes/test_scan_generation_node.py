@@ -15,8 +15,8 @@ from nodes.fed_nodes import Fed, dive, fed, measurement_of
 from nodes.processes import wait_until
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.prompt_dead_reckoning import PromptDeadReckoning
-from msss_graphslam.core.scan_generator import ScanGenerator
+from msss_graphslam.core.reckoning.prompt_dead_reckoning import PromptDeadReckoning
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Odometry, Scan
 from msss_graphslam.messages import encoding, link_decoding, topics
 from msss_graphslam.ros.messages import make

@@ -101,7 +101,7 @@ def test_versions_are_exact_and_each_has_its_reason(name: str) -> None:
 
 @pytest.mark.parametrize(
     "path",
-    [path for path in SOURCES if path.parent.name == "core"],
+    [path for path in SOURCES if "core" in path.relative_to(ROOT).parts],
     ids=lambda path: path.stem,
 )
 def test_the_core_only_computes(path: Path) -> None:

@@ -5,7 +5,7 @@ import pytest
 import yaml
 from PIL import Image
 
-from msss_graphslam.core.mapping import OccupancyGrid
+from msss_graphslam.core.maps.mapping import OccupancyGrid
 from msss_graphslam.results.occupancy_map import write_occupancy_map
 from msss_graphslam.results.point_cloud import write_points
 

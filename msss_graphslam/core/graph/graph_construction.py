@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scan matching and pose graph construction, Algorithm 4."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from msss_graphslam.core.compounding import between, between_covariance
+from msss_graphslam.core.graph.constraint_defects import defect
+from msss_graphslam.core.graph.data_association import Candidate
+from msss_graphslam.core.matching.match_result import MatchResult
+from msss_graphslam.core.matching.matchers import ScanMatcher
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
+
+__all__ = ["Node", "consecutive_constraint", "loop_constraints", "matched", "odometry_constraint"]
+
+
+@dataclass
+class Node:
+    """A keyframe as the front end keeps it.
+
+    ``scan`` in its present layout and ``prepared`` for the matcher, ``first_scan`` as dead
+    reckoning laid it out, its ``descriptor``, and ``covariance`` (3, 3) of its pose when it was
+    added, which later poses only make smaller. ``is_place``: whether later scans are matched with
+    it. Of the scans only stamp and odometry are left when two others have followed.
+    """
+
+    scan: Scan
+    prepared: Any
+    first_scan: Scan
+    descriptor: Array
+    covariance: Array
+    is_place: bool = True
+
+
+def odometry_constraint(
+    nodes: Sequence[Node], relative_pose: Array, covariance: Array
+) -> Constraint:
+    """Return the edge U_i of equation 1 from the last keyframe but one to the last."""
+    last = len(nodes) - 1
+    return Constraint(ConstraintKind.ODOMETRY, last - 1, last, relative_pose, covariance)
+
+
+def consecutive_constraint(
+    nodes: Sequence[Node],
+    initial: Array,
+    initial_covariance: Array,
+    matcher: ScanMatcher,
+    start: Array | None = None,
+) -> Constraint:
+    """Algorithm 4, lines 3 to 7: match the last keyframe with the one before.
+
+    ``start`` (3,) is what an earlier match of the two has found, None where there was none.
+    """
+    last = len(nodes) - 1
+    reference, current = nodes[last - 1].prepared, nodes[last].prepared
+    result = matcher.match(reference, current, initial, initial_covariance, start)
+    guess = Constraint(ConstraintKind.CONSECUTIVE, last - 1, last, initial, initial_covariance)
+    return matched(guess, result)
+
+
+def loop_constraints(
+    nodes: Sequence[Node],
+    poses: Array,
+    candidates: Sequence[Candidate],
+    matcher: ScanMatcher,
+) -> list[Constraint]:
+    """Algorithm 4, lines 8 to 13: match the last keyframe with every associated one.
+
+    ``poses`` (n, 3) are those of all nodes. Candidates that were refused stay refused.
+    """
+    constraints = []
+    current = len(nodes) - 1
+    for candidate in candidates:
+        node = nodes[candidate.index]
+        pose = poses[candidate.index]
+        figures = {
+            "mahalanobis": candidate.mahalanobis,
+            "shape_distance": candidate.shape_distance,
+        }
+        initial = between(pose, poses[current])  # line 9
+        covariance = between_covariance(  # line 10
+            pose, node.covariance, poses[current], nodes[current].covariance
+        )
+        guess = Constraint(
+            ConstraintKind.LOOP,
+            candidate.index,
+            current,
+            initial,
+            covariance,
+            candidate.refusal,
+            figures,
+        )
+        if candidate.accepted:
+            result = matcher.match(node.prepared, nodes[current].prepared, initial, covariance)
+            guess = matched(guess, result)
+        constraints.append(guess)
+    return constraints
+
+
+def matched(constraint: Constraint, result: MatchResult) -> Constraint:
+    """Return the constraint with what a match says of it, refused if no graph could take it."""
+    found = replace(
+        constraint,
+        relative_pose=np.asarray(result.relative_pose),
+        covariance=np.asarray(result.covariance),
+        refusal=result.refusal,
+        figures={**constraint.figures, **result.figures},
+    )
+    return found if result.refusal else replace(found, refusal=defect(found, found.second + 1))

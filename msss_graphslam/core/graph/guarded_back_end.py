@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""The back end behind a guard: loop closures that contradict what is known stay outside."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from msss_graphslam.config.groups import BackEnd as BackEndConfig
+from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.closure_review import LAYOUT, ClosureReview
+from msss_graphslam.core.graph.constraint_defects import defect
+from msss_graphslam.core.graph.known_places import KNOWN_BETTER, hung_again
+from msss_graphslam.core.graph.odometry_chain import OdometryChain
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind
+
+__all__ = ["CONTRADICTS", "WITHDRAWN", "GuardedBackEnd"]
+
+CONTRADICTS = "contradicts_odometry"
+"""Refusal of a closure that the way between its keyframes excludes."""
+
+WITHDRAWN = "withdrawn"
+"""Refusal of a closure that the graph has come to contradict; the graph may take it back."""
+
+
+class GuardedBackEnd:
+    """Keyframes and tried constraints in, optimised poses and covariances out.
+
+    ``tried`` are all constraints in the order of trial, refused as they stand now. ``withdrawals``
+    and ``readmissions`` count what has been taken out again and put back. Without ``guards`` the
+    graph takes and keeps whatever was accepted.
+    """
+
+    def __init__(self, config: BackEndConfig, *, guards: bool) -> None:
+        """Begin empty; ``guards`` also has the matches of a scan share their weight."""
+        self._bound = config.contradiction if guards else 0.0
+        self._back_end = BackEnd(config, divides=guards)
+        self._chain = OdometryChain()
+        self._review = ClosureReview(self._bound)
+        self._watched: list[int] = []
+        self.tried: list[Constraint] = []
+        self.withdrawals = self.readmissions = 0
+
+    def take(self, pose: Array, tried: Sequence[Constraint]) -> tuple[Array, Array]:
+        """Take in a keyframe; return all poses (n, 3) and the newest one's covariance (3, 3).
+
+        As ``BackEnd.take``, which raises ValueError for what no graph can take; nothing has
+        changed then.
+        """
+        if not self._bound:
+            answer = self._back_end.take(pose, tried)
+            self.tried += tried
+            return answer
+        if tried:
+            self._chain.append(_consecutive(tried, len(self._chain)))
+        try:
+            judged = [self._judged(edge) for edge in tried]
+            if any(edge.refusal == CONTRADICTS for edge in judged):
+                judged = hung_again(judged)
+            poses, covariance = self._back_end.take(pose, judged)
+        except Exception:
+            self._chain.cut(len(self._chain) - bool(tried))
+            raise
+        self._chain.cut(len(poses))
+        self._note(judged)
+        return self._reviewed(poses, covariance)
+
+    def _judged(self, edge: Constraint) -> Constraint:
+        """Return the constraint, refused if it is a closure that odometry excludes."""
+        usable = not defect(edge, len(self._chain)) and edge.first < edge.second
+        if edge.kind is not ConstraintKind.LOOP or not edge.accepted or not usable:
+            return edge
+        distance = self._chain.squared_distance(edge, LAYOUT)
+        refusal = CONTRADICTS if distance > self._bound else ""
+        return replace(edge, refusal=refusal, figures={**edge.figures, "contradiction": distance})
+
+    def _note(self, judged: Sequence[Constraint]) -> None:
+        """Keep the constraints, and watch the closures among those that the graph has taken."""
+        closures = [
+            number
+            for number, edge in enumerate(judged, len(self.tried))
+            if edge.kind is ConstraintKind.LOOP and edge.accepted
+        ]
+        self.tried += judged
+        self._watched += closures
+        self._review.add([self.tried[number] for number in closures])
+
+    def _reviewed(self, poses: Array, covariance: Array) -> tuple[Array, Array]:
+        verdict = self._review.judge(poses)
+        if not verdict.withdrawn and not verdict.readmitted:
+            return poses, covariance
+        out = [self.tried[self._watched[number]] for number in verdict.withdrawn]
+        for number in verdict.withdrawn:
+            self._set_refusal(number, WITHDRAWN)
+        held = self._held_by_chain({edge.second for edge in out})
+        for number in verdict.readmitted:
+            self._set_refusal(number, "")
+        back = [self.tried[self._watched[number]] for number in verdict.readmitted]
+        self.withdrawals += len(out)
+        self.readmissions += len(back)
+        poses = self._back_end.exchange(out, back + held)
+        return poses, self._back_end.covariance(len(poses) - 1)
+
+    def _held_by_chain(self, keyframes: set[int]) -> list[Constraint]:
+        """Return the edges by which keyframes hang on their predecessors, if they were left out.
+
+        A keyframe of a known place may hang on its closures alone.
+        """
+        places = [
+            place
+            for place, edge in enumerate(self.tried)
+            if edge.second in keyframes and edge.refusal == KNOWN_BETTER
+        ]
+        for place in places:
+            self.tried[place] = replace(self.tried[place], refusal="")
+        return [self.tried[place] for place in places]
+
+    def _set_refusal(self, number: int, refusal: str) -> None:
+        place = self._watched[number]
+        self.tried[place] = replace(self.tried[place], refusal=refusal)
+
+
+def _consecutive(tried: Sequence[Constraint], number: int) -> Constraint | None:
+    """Return the best edge from the keyframe before: the match, or else odometry."""
+    edges = [
+        edge
+        for edge in tried
+        if (edge.accepted or edge.refusal == KNOWN_BETTER)
+        and edge.kind is not ConstraintKind.LOOP
+        and (edge.first, edge.second) == (number - 1, number)
+        and not defect(edge, number + 1)
+    ]
+    return edges[-1] if edges else None

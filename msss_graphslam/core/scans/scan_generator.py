@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Beams and odometry in, scans out: lines 3 to 8 of Algorithm 1."""
+
+from collections import Counter
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+
+from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter, reject_ghosts
+from msss_graphslam.core.scans.history import DeadReckoningHistory, Turn, TurnDetector
+from msss_graphslam.core.scans.scan_generation import generate_scan
+from msss_graphslam.core.types import Beam, Odometry, Reading, Scan, Stage
+
+__all__ = ["BLOCK", "ScanGenerator"]
+
+BLOCK = 32
+"""So many beams are segmented at once, which takes half the time of one by one."""
+
+
+@dataclass(slots=True)
+class _Heard:
+    """Where a beam of the turn in progress points; what is read in it follows a little later."""
+
+    stamp_ns: int
+    bearing: float
+    reading: Reading = field(init=False)
+
+
+class ScanGenerator:
+    """Every beam leaves in exactly one scan, as soon as the odometry covers the turn.
+
+    Beams and odometry may come in any order against each other; the scans do not depend on it.
+    What is refused is counted in ``refused``.
+    """
+
+    def __init__(
+        self,
+        configuration: Configuration,
+        refused: Counter[str],
+        stage: Stage = lambda _: nullcontext(),
+    ) -> None:
+        self._configuration = configuration
+        self._stage = stage
+        self._segmenter = BeamSegmenter(configuration.sonar, configuration.segmentation)
+        self._turns: TurnDetector[_Heard] = TurnDetector(configuration.scanning, refused)
+        self._unread: list[tuple[Beam, _Heard]] = []
+        self._waiting: list[Turn[Reading]] = []
+        self._history = DeadReckoningHistory()
+
+    @property
+    def waiting(self) -> int:
+        """How many turns wait for their odometry."""
+        return len(self._waiting)
+
+    def warm_up(self, beam: Beam) -> None:
+        """Learn the background from a beam that stands in an earlier process' scans."""
+        self._segmenter.segment(beam)
+
+    def add_beam(self, beam: Beam) -> list[Scan]:
+        """Algorithm 1, lines 4 and 7, for one beam, in the order of their stamps."""
+        heard = _Heard(beam.stamp_ns, beam.bearing)
+        self._unread.append((beam, heard))
+        turn = self._turns.add(heard)
+        if turn is not None:
+            self._waiting.append(self._read(turn))
+        elif len(self._unread) == BLOCK:
+            self._segment()
+        return self._covered()
+
+    def add_odometry(self, odometry: Odometry) -> list[Scan]:
+        """Algorithm 1, line 6, for one odometry, in the order of their stamps."""
+        self._history.append(odometry)
+        return self._covered()
+
+    def finish(self) -> list[Scan]:
+        """Return what is left at the end, also of a turn that the odometry does not cover."""
+        # Deviation: the paper leaves the last part turn out; the trajectory ends in it.
+        last = self._turns.finish()
+        if last is not None:
+            self._waiting.append(self._read(last))
+        waiting, self._waiting = self._waiting, []
+        if self._history.latest is None:
+            return []
+        return [self._generate(turn) for turn in waiting]
+
+    def _segment(self) -> None:
+        """Read the beams that wait for it, and let go of them."""
+        unread, self._unread = self._unread, []
+        with self._stage("beam_segmentation"):
+            readings = self._segmenter.segment_all([beam for beam, _ in unread])
+        for (_, heard), reading in zip(unread, readings, strict=True):
+            heard.reading = reading
+
+    def _read(self, turn: Turn[_Heard]) -> Turn[Reading]:
+        self._segment()
+        readings = [heard.reading for heard in turn.readings]
+        return Turn(readings, turn.end_ns, turn.swept, turn.complete, turn.usable)
+
+    def _covered(self) -> list[Scan]:
+        scans = []
+        while self._waiting and self._history.covers(self._waiting[0].end_ns):
+            scans.append(self._generate(self._waiting.pop(0)))
+        return scans
+
+    def _generate(self, turn: Turn[Reading]) -> Scan:
+        with self._stage("scan_generation"):
+            if turn.usable:
+                turn.readings = reject_ghosts(turn.readings, self._configuration.segmentation)
+            scan = generate_scan(turn, self._history, self._configuration.sonar)  # line 8
+        self._history.forget_before(turn.end_ns)  # lines 23 and 24
+        return scan

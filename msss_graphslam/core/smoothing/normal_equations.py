@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The msss_graphslam authors
+# SPDX-License-Identifier: Apache-2.0
+"""Sparse normal equations of planar poses, the first of which stays where it is."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from msss_graphslam.core.smoothing.pose_covariances import pose_covariances
+from msss_graphslam.core.types import Array
+
+__all__ = ["NormalEquations"]
+
+
+class NormalEquations:
+    """The sum of what measurements say of ``count`` poses: H x = -g."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._whole: Any = None
+        self._gradient = np.zeros(3 * count)
+        self._factors: Any = None
+
+    def add(self, nodes: NDArray[np.intp], information: Array, gradient: Array) -> None:
+        """Add m measurements of k poses each, ``nodes`` (m, k); one may name a pose twice.
+
+        ``information`` (m, 3k, 3k) and ``gradient`` (m, 3k).
+        """
+        # It holds memory that a node does without until the end.
+        from scipy.sparse import csc_matrix
+
+        width = 3 * nodes.shape[1]
+        places = (3 * nodes[:, :, None] + np.arange(3)).astype(np.int32).reshape(-1, width)
+        indices = np.repeat(places, width, axis=1).ravel(), np.tile(places, width).ravel()
+        size = 3 * self._count
+        added = csc_matrix((information.ravel(), indices), shape=(size, size))
+        self._whole = added if self._whole is None else self._whole + added
+        np.add.at(self._gradient, places, gradient)
+        self._factors = None
+
+    def solution(self) -> Array:
+        """Return the steps (count - 1, 3) of all poses but the first.
+
+        Raises RuntimeError where the measurements leave one undetermined.
+        """
+        return np.asarray(-self._factorised().solve(self._gradient[3:])).reshape(-1, 3)
+
+    def covariances(self) -> Array:
+        """Return the covariances (count, 3, 3) of the poses, the first one's being zero."""
+        result = np.zeros((self._count, 3, 3))
+        result[1:] = pose_covariances(self._whole[3:, 3:])
+        return result
+
+    def covariance_of_last(self, count: int) -> Array:
+        """Return the covariance (3 count, 3 count) of the last poses together."""
+        size, width = 3 * (self._count - 1), 3 * count
+        result = np.zeros((width, width))
+        free = min(size, width)
+        columns = self._factorised().solve(np.eye(size, free, free - size))
+        result[-free:, -free:] = columns[-free:]
+        return 0.5 * (result + result.T)
+
+    def _factorised(self) -> Any:
+        if self._factors is None:
+            from scipy.sparse.linalg import splu
+
+            # Symmetric and positive definite: the diagonal is as good a pivot as any.
+            self._factors = splu(
+                self._whole[3:, 3:],
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+        return self._factors
