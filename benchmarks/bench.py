@@ -10,7 +10,6 @@ from pathlib import Path
 from benchmarks.bags import simulated_bag
 from benchmarks.bench_tables import growth_table, process_table, stage_table
 from benchmarks.cost import process_cost, scan_costs
-from benchmarks.missions import keep_silent
 from benchmarks.tables import Table
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
@@ -60,8 +59,9 @@ def _tables(folder: Path, console: Console) -> Iterator[Table]:
     basin = simulated_bag(world_named("paper"), SEED, folder, console)
     yield _processes(basin, folder, console)
     for recipe in ESTIMATORS.values():
-        console.remark(f"{recipe.name} by stage")
-        yield stage_table(estimate(open_recording(basin), recipe, Configuration(), keep_silent))
+        with console.progress() as progress:
+            record = estimate(open_recording(basin), recipe, Configuration(), progress)
+        yield stage_table(record)
     marina = simulated_bag(replace(world_named("marina"), laps=1), SEED, folder, console)
     for recipe in ESTIMATORS.values():
         if recipe.closes_loops:

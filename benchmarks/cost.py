@@ -71,10 +71,10 @@ class ScanCosts:
 
 
 def process_cost(bag: Path, estimator: str, output: Path) -> ProcessCost:
-    """Run ``msss run`` as a process of its own; CalledProcessError where it fails."""
+    """Run ``msss run``, with its progress, as a process; CalledProcessError where it fails."""
     command = [sys.executable, "-m", "msss_graphslam", "run", str(bag)]
-    command += ["--out", str(output), "--estimator", estimator, "--quiet"]
-    process = subprocess.Popen(command)  # noqa: S603
+    command += ["--out", str(output), "--estimator", estimator]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)  # noqa: S603
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode not in (ExitCode.CLEAN, ExitCode.DATA_LOST):

@@ -32,11 +32,14 @@ def test_calls_are_counted() -> None:
     assert rows["beam segmentation"][1] == str(12 * 60)
 
 
-@pytest.mark.parametrize(("cpu", "missed"), [(9.99, False), (10.2, True)])
-def test_a_run_too_slow_is_marked(cpu: float, missed: bool) -> None:
-    (row,) = process_table({"full": ProcessCost(cpu, 20.0, 200.0)}, duration=1000.0).rows
+@pytest.mark.parametrize(
+    ("estimator", "cpu", "missed"),
+    [("uspic", 9.9, False), ("uspic", 10.2, True), ("full", 6.6, False), ("full", 6.7, True)],
+)
+def test_a_run_too_slow_is_marked(estimator: str, cpu: float, missed: bool) -> None:
+    (row,) = process_table({estimator: ProcessCost(cpu, 20.0, 200.0)}, duration=1000.0).rows
     assert row[2].endswith("(missed)") == missed
-    (row,) = process_table({"full": ProcessCost(5.0, cpu, 200.0)}, duration=1000.0).rows
+    (row,) = process_table({estimator: ProcessCost(5.0, cpu, 200.0)}, duration=1000.0).rows
     assert row[4].endswith("(missed)") == missed
 
 
