@@ -13,7 +13,7 @@ OTHER_FLAVOUR := $(filter-out $(STAMP),$(wildcard $(VENV)/.ready-*))
 export OMP_NUM_THREADS ?= 1
 # Plug-ins of a sourced ROS are older than this pytest: only our own are loaded.
 # Tests that start processes wait for them most of the time.
-WORKERS ?= $(shell echo $$((2 * $$(getconf _NPROCESSORS_ONLN))))
+WORKERS ?= $(shell echo $$((1 + $$(getconf _NPROCESSORS_ONLN))))
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/python -m pytest -p xdist.plugin -p _hypothesis_pytestplugin
 
 .DEFAULT_GOAL := help

@@ -21,7 +21,6 @@ DOCUMENTS = [
     "README.md",
     "CONTRIBUTING.md",
     "bags/README.md",
-    "docs/ablation.md",
     "docs/accuracy.md",
     "docs/consistency.md",
     "docs/live.md",
