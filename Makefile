@@ -41,7 +41,7 @@ test: $(STAMP) ## pass the tests
 	$(PYTEST) -n $(WORKERS) --dist worksteal --ignore test/system $(TESTS)
 
 test-system: $(STAMP) ## pass the tests of the whole node graph, which want a quiet machine
-	$(PYTEST) -n auto --dist worksteal test/system
+	$(PYTEST) -n auto --dist worksteal $(or $(TESTS),test/system)
 
 # With wheels the environment is ROS's prefix too; a sourced ROS has said where it is.
 COLCON := . $(BIN)/activate && AMENT_PREFIX_PATH=$${AMENT_PREFIX_PATH:-$$VIRTUAL_ENV} \

@@ -186,7 +186,9 @@ def _init() -> None:
 
 def main() -> int:
     """Run the node until the bag is worked off; return its exit code."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # A shell that starts it in the background has SIGINT ignored.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     try:
         # Our own handling of SIGINT keeps the middleware alive until the loop has ended.
         _init()

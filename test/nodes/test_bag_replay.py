@@ -195,7 +195,7 @@ def test_a_fast_replay_stays_within_seconds_of_scan_generation(tmp_path: Path, a
         def take() -> None:
             if newest.stamp_ns:
                 ahead.append(newest.stamp_ns - newest.told_ns)
-                newest.tell(min(newest.stamp_ns, newest.told_ns + 500_000_000))
+                newest.tell(min(newest.stamp_ns, newest.told_ns + 100_000_000))
 
         listener.node.create_timer(0.02, take)
         with replay(at, bag) as process:

@@ -123,13 +123,13 @@ def test_a_start_with_values_that_do_not_go_together_is_told() -> None:
 
 def test_a_file_is_played_and_its_end_is_told(tmp_path: Path) -> None:
     file = tmp_path / "head.bin"
-    file.write_bytes(b"noise" + b"".join(data for data, _ in packets(50)))
+    file.write_bytes(b"noise" + b"".join(data for data, _ in packets(150)))
     with driven(source="file", file=file) as driver:
         driver.hear(topics.SONAR_RAW)
         assert driver.await_text("it is at its end") == Level.WARN
         beams = driver.beams
-        assert 0 < len(beams) <= 50
-        assert int(driver.diagnostic("beams")) == 50
+        assert 0 < len(beams) <= 150
+        assert int(driver.diagnostic("beams")) == 150
         intervals = np.diff([beam.stamp_ns for beam in beams]) * 1e-9
         assert np.median(intervals) == pytest.approx(0.0427, rel=0.1)
         file.unlink()
