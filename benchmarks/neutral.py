@@ -10,7 +10,7 @@ import numpy as np
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.graph.front_end import FrontEnd
-from msss_graphslam.core.graph.refinement import Refined, whole_graph
+from msss_graphslam.core.graph.refinement import Refined
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.scans.motion_feedback import MotionFeedback
 from msss_graphslam.core.smoothing.joint_smoothing import Smoothed
@@ -40,9 +40,9 @@ def refine(
     progress: Callable[[float], None],
 ) -> Refined:
     """Return the graph as it is."""
-    del scans, known, matcher
+    del scans, known, matcher, config
     progress(1.0)
-    return Refined(poses, whole_graph(poses, constraints, config), list(constraints))
+    return Refined(poses, list(constraints))
 
 
 def smooth(scans: Sequence[Scan], poses: Array, last_twist: Array, *others: Any) -> Smoothed:

@@ -12,8 +12,8 @@ import numpy as np
 
 from benchmarks.tables import Table
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
-from msss_graphslam.core.compounding import compose, rotation
-from msss_graphslam.core.graph.back_end import LAUNCH_VARIANCE, BackEnd
+from msss_graphslam.core.compounding import compose
+from msss_graphslam.core.graph.back_end import BackEnd, between_factor, launch_prior
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Estimate
 from msss_graphslam.offline.estimation import Progress
 
@@ -61,33 +61,20 @@ class _Batch:
         self._config = config
         self._graph = gtsam.NonlinearFactorGraph()
         self._poses = [np.zeros(3)]
-        prior = gtsam.noiseModel.Isotropic.Variance(3, LAUNCH_VARIANCE)
-        self._graph.add(gtsam.PriorFactorPose2(0, gtsam.Pose2(0.0, 0.0, 0.0), prior))
+        self._graph.add(launch_prior(self._poses[0]))
 
     def solve(self, constraints: Sequence[Constraint]) -> Array:
         for constraint in constraints:
             if constraint.second == len(self._poses):
                 first = self._poses[constraint.first]
                 self._poses.append(compose(first, constraint.relative_pose))
-            self._graph.add(self._factor(constraint))
+            self._graph.add(between_factor(constraint, self._config))
         values = gtsam.Values()
         for number, pose in enumerate(self._poses):
             values.insert(number, gtsam.Pose2(*pose))
         solution = gtsam.LevenbergMarquardtOptimizer(self._graph, values).optimize()
         self._poses = list(gtsam.utilities.extractPose2(solution))
         return np.array(self._poses)
-
-    def _factor(self, constraint: Constraint) -> gtsam.BetweenFactorPose2:
-        turn = np.eye(3)
-        turn[:2, :2] = rotation(-float(constraint.relative_pose[2]))
-        noise: gtsam.noiseModel.Base = gtsam.noiseModel.Gaussian.Covariance(
-            turn @ constraint.covariance @ turn.T
-        )
-        if constraint.kind is ConstraintKind.LOOP:
-            kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(self._config.robust_width)
-            noise = gtsam.noiseModel.Robust.Create(kernel, noise)
-        relative = gtsam.Pose2(*constraint.relative_pose)
-        return gtsam.BetweenFactorPose2(constraint.first, constraint.second, relative, noise)
 
 
 def graph_table(world: str, costs: GraphCosts) -> Table:

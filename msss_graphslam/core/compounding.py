@@ -16,11 +16,13 @@ from msss_graphslam.core.types import Array
 __all__ = [
     "between",
     "between_covariance",
+    "between_jacobians",
     "carried_over",
     "compose",
     "compose_jacobians",
     "inverse",
     "inverse_jacobian",
+    "planar_rotation",
     "rotation",
     "transform_points",
     "wrap",
@@ -48,6 +50,13 @@ def rotation(yaw: Array | float) -> Array:
     matrix[..., 1, 0] = np.sin(yaw)
     matrix[..., 0, 1] = -matrix[..., 1, 0]
     return matrix
+
+
+def planar_rotation(yaw: float) -> Array:
+    """Return the matrix (3, 3) that turns x and y by the yaw angle [rad] and leaves yaw alone."""
+    turn = np.eye(3)
+    turn[:2, :2] = rotation(yaw)
+    return turn
 
 
 def compose(first: Array, second: Array) -> Array:
@@ -103,6 +112,12 @@ def inverse_jacobian(pose: Array) -> Array:
     return jacobian
 
 
+def between_jacobians(first: Array, second: Array) -> tuple[Array, Array]:
+    """Return the derivatives (..., 3, 3) of ``between`` by each argument."""
+    by_inverse, by_second = compose_jacobians(inverse(first), second)
+    return by_inverse @ inverse_jacobian(first), by_second
+
+
 def between_covariance(
     first: Array, first_covariance: Array, second: Array, second_covariance: Array
 ) -> Array:
@@ -110,8 +125,7 @@ def between_covariance(
 
     Algorithm 4, lines 4 and 10.
     """
-    by_first, by_second = compose_jacobians(inverse(first), second)
-    by_first = by_first @ inverse_jacobian(first)
+    by_first, by_second = between_jacobians(first, second)
     return np.asarray(
         by_first @ first_covariance @ np.swapaxes(by_first, -1, -2)
         + by_second @ second_covariance @ np.swapaxes(by_second, -1, -2)

@@ -117,12 +117,21 @@ def test_echoes_are_those_of_scipy_s_peaks(seed):
         peaks = find_peaks(excess, prominence=DROP)[0] - 1
         edges = np.array([edges_of(levels, peak) for peak in peaks]).reshape(-1, 2)
         whole = (edges[:, 0] > 0.0) & (edges[:, 1] < levels.size - 1)
+        alone = [stands_alone(number, peaks, edges, levels) for number in range(peaks.size)]
+        whole &= np.array(alone, dtype=bool)
         np.testing.assert_array_equal(echoes.peaks, peaks[whole])
         np.testing.assert_allclose(
             np.column_stack([echoes.leading, echoes.trailing]), edges[whole], atol=1e-12
         )
         found += whole.sum()
     assert found or levels.size < 20
+
+
+def stands_alone(number, peaks, edges, levels):
+    """Whether no peak between the echo's edges is stronger, or as strong and nearer."""
+    begin, end = edges[number]
+    rank = (levels[peaks[number]], -peaks[number])
+    return all((levels[peak], -peak) <= rank for peak in peaks if begin < peak < end)
 
 
 def edges_of(levels, peak):
@@ -151,3 +160,17 @@ def test_smoothing_is_a_convolution(size):
     kernel = np.random.default_rng(1).uniform(0.0, 1.0, size)
     expected = [np.convolve(profile, kernel[::-1], "same") for profile in profiles]
     np.testing.assert_allclose(smooth(profiles, kernel), expected, atol=1e-11)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_shoulder_that_stands_out_where_the_threshold_falls_is_no_echo(direction):
+    levels = np.array([[0.0, 0, 20, 40, 36, 38, 20, 0, 0]])[:, ::direction]
+    thresholds = np.array([[14.0, 14, 14, 14, 36, 14, 14, 14, 14]])[:, ::direction]
+    echoes = find_echoes(levels, thresholds, DROP, DYNAMIC_RANGE)
+    assert echoes.levels == pytest.approx([40.0])
+
+
+def test_equal_echoes_without_a_valley_are_one():
+    levels = np.array([[0.0, 0, 40, 36, 40, 0, 0]])
+    thresholds = np.array([[14.0, 14, 14, 38, 14, 14, 14]])
+    assert find_echoes(levels, thresholds, DROP, DYNAMIC_RANGE).peaks.size == 1

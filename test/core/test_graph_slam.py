@@ -321,7 +321,7 @@ def test_keyframes_come_with_positive_covariances_that_grow_from_nothing() -> No
 
 
 def refined(slam: Slam, reports: list[float], poses: Array | None = None) -> Refined:
-    result = refine(
+    return refine(
         scans()[: len(slam.front_end.poses)],
         slam.front_end.poses if poses is None else poses,
         slam.constraints,
@@ -330,8 +330,6 @@ def refined(slam: Slam, reports: list[float], poses: Array | None = None) -> Ref
         CONFIGURATION.back_end,
         reports.append,
     )
-    np.testing.assert_array_equal(result.back_end.poses(), result.poses)
-    return result
 
 
 def test_refinement_makes_the_keyframes_no_worse() -> None:

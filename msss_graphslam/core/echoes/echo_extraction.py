@@ -113,4 +113,18 @@ def _with_edges(levels: Array, peaks: NDArray[np.intp], drop: float) -> Echoes:
     first = profiles * (bins + 2) + 1
     leading, trailing = crossings(values, peaks, heights - drop, first)
     whole_echo = (leading > 0.0) & (trailing < bins - 1)
-    return Echoes(profiles, peaks - first, leading, trailing, heights).where(whole_echo)
+    found = Echoes(profiles, peaks - first, leading, trailing, heights).where(whole_echo)
+    return _without_shoulders(found)
+
+
+def _without_shoulders(echoes: Echoes) -> Echoes:
+    """Leave out what no valley of levels parts from a stronger echo beside it.
+
+    It stood out where the threshold falls; its edges would be those of both together.
+    """
+    together = echoes.profiles[1:] == echoes.profiles[:-1]
+    rises = echoes.levels[1:] > echoes.levels[:-1]
+    shoulder = np.zeros(echoes.profiles.size, dtype=bool)
+    shoulder[1:] = together & ~rises & (echoes.leading[1:] < echoes.peaks[:-1])
+    shoulder[:-1] |= together & rises & (echoes.trailing[:-1] > echoes.peaks[1:])
+    return _without_shoulders(echoes.where(~shoulder)) if shoulder.any() else echoes

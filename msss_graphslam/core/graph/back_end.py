@@ -13,11 +13,11 @@ import gtsam
 import numpy as np
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
-from msss_graphslam.core.compounding import compose, rotation
+from msss_graphslam.core.compounding import compose, planar_rotation
 from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["BackEnd"]
+__all__ = ["BackEnd", "between_factor", "launch_prior"]
 
 LAUNCH_VARIANCE = 1e-12
 """The first pose defines the map; its prior only holds the gauge [m^2, rad^2]."""
@@ -152,11 +152,10 @@ class BackEnd:
         for node in range(first_new, len(self._initial)):
             values.insert(node, gtsam.Pose2(*self._initial[node]))
             if node == 0:
-                prior = gtsam.noiseModel.Isotropic.Variance(3, LAUNCH_VARIANCE)
-                graph.add(gtsam.PriorFactorPose2(0, gtsam.Pose2(*self._initial[0]), prior))
+                graph.add(launch_prior(self._initial[0]))
         shares = _shares(constraints) if self._divides else [1.0] * len(constraints)
         for constraint, share in zip(constraints, shares, strict=True):
-            graph.add(self._factor(constraint, share))
+            graph.add(between_factor(constraint, self._config, share))
         indices = self._isam.update(graph, values, list(out)).getNewFactorsIndices()
         self._slots += list(indices)[len(indices) - len(constraints) :]
         self._isam.update()
@@ -167,14 +166,24 @@ class BackEnd:
         self._slots = []
         self._push(0, self.constraints)
 
-    def _factor(self, constraint: Constraint, share: float) -> gtsam.BetweenFactorPose2:
-        covariance = _turned(constraint.covariance, -float(constraint.relative_pose[2])) / share
-        noise: gtsam.noiseModel.Base = gtsam.noiseModel.Gaussian.Covariance(covariance)
-        if constraint.kind is ConstraintKind.LOOP and self._config.robust_width > 0.0:
-            kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(self._config.robust_width)
-            noise = gtsam.noiseModel.Robust.Create(kernel, noise)
-        relative = gtsam.Pose2(*constraint.relative_pose)
-        return gtsam.BetweenFactorPose2(constraint.first, constraint.second, relative, noise)
+
+def launch_prior(pose: Array) -> gtsam.PriorFactorPose2:
+    """Return what holds keyframe 0 at its ``pose`` (3,)."""
+    noise = gtsam.noiseModel.Isotropic.Variance(3, LAUNCH_VARIANCE)
+    return gtsam.PriorFactorPose2(0, gtsam.Pose2(*pose), noise)
+
+
+def between_factor(
+    constraint: Constraint, config: BackEndConfig, share: float = 1.0
+) -> gtsam.BetweenFactorPose2:
+    """Return a constraint as a factor of equation 4; it counts as a ``share`` of itself."""
+    covariance = _turned(constraint.covariance, -float(constraint.relative_pose[2])) / share
+    noise: gtsam.noiseModel.Base = gtsam.noiseModel.Gaussian.Covariance(covariance)
+    if constraint.kind is ConstraintKind.LOOP and config.robust_width > 0.0:
+        kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(config.robust_width)
+        noise = gtsam.noiseModel.Robust.Create(kernel, noise)
+    relative = gtsam.Pose2(*constraint.relative_pose)
+    return gtsam.BetweenFactorPose2(constraint.first, constraint.second, relative, noise)
 
 
 def _shares(constraints: Sequence[Constraint]) -> list[float]:
@@ -201,8 +210,7 @@ def _smoother() -> gtsam.ISAM2:
 
 def _turned(covariance: Array, yaw: float) -> Array:
     """Return a pose's covariance in axes turned by -yaw; gtsam's are those of the pose itself."""
-    turn = np.eye(3)
-    turn[:2, :2] = rotation(yaw)
+    turn = planar_rotation(yaw)
     return np.asarray(turn @ covariance @ turn.T)
 
 

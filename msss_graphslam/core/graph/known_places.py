@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from msss_graphslam.core.compounding import planar_rotation
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["KNOWN_BETTER", "hung_again", "is_known", "located_alone"]
@@ -71,8 +72,7 @@ def _information(constraints: Sequence[Constraint]) -> Array:
     """Return what the constraints say together (3, 3) of where their second keyframe is."""
     total = np.zeros((3, 3))
     for entry in constraints:
-        cosine, sine = np.cos(entry.relative_pose[2]), np.sin(entry.relative_pose[2])
         # In the axes of the second keyframe, which all of them have in common.
-        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        turn = planar_rotation(float(entry.relative_pose[2]))
         total += turn.T @ np.linalg.inv(entry.covariance) @ turn
     return total

@@ -8,7 +8,7 @@
 
 import numpy as np
 
-from msss_graphslam.core.compounding import between, compose, rotation, wrap
+from msss_graphslam.core.compounding import between, compose, planar_rotation, wrap
 from msss_graphslam.core.types import Array, Constraint
 
 __all__ = ["OdometryChain"]
@@ -35,7 +35,7 @@ class OdometryChain:
             self._pieces.append(self._pieces[-1] + 1)
             return
         pose = compose(self._poses[-1], edge.relative_pose)
-        turned = _about_origin(pose[:2]) @ _turn(float(self._poses[-1][2]))
+        turned = _about_origin(pose[:2]) @ planar_rotation(float(self._poses[-1][2]))
         self._poses.append(pose)
         self._sums.append(self._sums[-1] + turned @ edge.covariance @ turned.T)
         self._pieces.append(self._pieces[-1])
@@ -55,7 +55,7 @@ class OdometryChain:
         if self._pieces[first] != self._pieces[second]:
             return None
         pose, other = self._poses[first], self._poses[second]
-        turned = _turn(float(pose[2])).T @ _about_origin(-other[:2])
+        turned = planar_rotation(float(pose[2])).T @ _about_origin(-other[:2])
         spread = turned @ (self._sums[second] - self._sums[first]) @ turned.T
         return between(pose, other), spread
 
@@ -70,12 +70,6 @@ class OdometryChain:
         off = edge.relative_pose - known[0]
         off[2] = wrap(off[2])
         return float(off @ np.linalg.solve(known[1] + edge.covariance + slack, off))
-
-
-def _turn(yaw: float) -> Array:
-    turn = np.eye(3)
-    turn[:2, :2] = rotation(yaw)
-    return turn
 
 
 def _about_origin(point: Array) -> Array:

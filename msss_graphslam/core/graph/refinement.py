@@ -43,10 +43,9 @@ KEPT = 512
 
 @dataclass(frozen=True, slots=True)
 class Refined:
-    """The poses (n, 3) after refinement, their graph, and the constraints."""
+    """The poses (n, 3) after refinement, and the constraints."""
 
     poses: Array
-    back_end: BackEnd
     constraints: list[Constraint]
 
 
@@ -70,9 +69,9 @@ def refine(
         if number % REPORTED == 0:
             progress(number / len(constraints))
     edges = _held(constraints, edges)
-    back_end = whole_graph(poses, edges, config, divides=True)
+    refined = whole_graph(poses, edges, config, divides=True).poses()
     progress(1.0)
-    return Refined(back_end.poses(), back_end, edges)
+    return Refined(refined, edges)
 
 
 def _held(before: Sequence[Constraint], after: Sequence[Constraint]) -> list[Constraint]:

@@ -8,18 +8,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from msss_graphslam.core.compounding import (
-    between,
-    compose_jacobians,
-    inverse,
-    inverse_jacobian,
-    wrap,
-)
+from msss_graphslam.core.compounding import between, between_jacobians, wrap
 from msss_graphslam.core.smoothing.bent_scan import BentScan, bend, reckoned_ends
 from msss_graphslam.core.smoothing.twist_chain import durations_of
 from msss_graphslam.core.types import Array, Scan
 
-__all__ = ["BentScans", "applied", "between_jacobian", "change_of"]
+__all__ = ["BentScans", "applied", "change_of"]
 
 KEPT = 2048
 """Bent scans at hand; others are bent again when they are needed: bounds the memory."""
@@ -76,7 +70,8 @@ class BentScans:
         """
         changes = change_of(between(states[:-1], states[1:]), self._relatives)
         twists = self.twists + applied(self._by_relative, changes)
-        return twists, self._by_relative @ between_jacobian(states[:-1], states[1:])
+        jacobians = np.concatenate(between_jacobians(states[:-1], states[1:]), axis=2)
+        return twists, self._by_relative @ jacobians
 
     def forget(self) -> None:
         """Let go of the bent scans; they are bent again if they are asked for."""
@@ -97,12 +92,6 @@ def change_of(now: Array, before: Array) -> Array:
     change = now - before
     change[:, 2] = wrap(change[:, 2])
     return np.asarray(change)
-
-
-def between_jacobian(first: Array, second: Array) -> Array:
-    """Return the derivatives (m, 3, 6) of ``between`` by both poses."""
-    by_inverse, by_second = compose_jacobians(inverse(first), second)
-    return np.concatenate([by_inverse @ inverse_jacobian(first), by_second], axis=2)
 
 
 def _extent(scan: Scan) -> float:

@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from msss_graphslam.core.compounding import between, inverse, inverse_jacobian
+from msss_graphslam.core.compounding import (
+    between,
+    between_jacobians,
+    inverse,
+    inverse_jacobian,
+)
 from msss_graphslam.core.scans.motion_feedback import Persistence
 from msss_graphslam.core.smoothing.bent_pair import Pairing, pairings
-from msss_graphslam.core.smoothing.bent_scans import (
-    BentScans,
-    applied,
-    between_jacobian,
-    change_of,
-)
+from msss_graphslam.core.smoothing.bent_scans import BentScans, applied, change_of
 from msss_graphslam.core.smoothing.joint_pairs import weights_of
 from msss_graphslam.core.smoothing.normal_equations import NormalEquations
 from msss_graphslam.core.smoothing.twist_chain import TwistChain
@@ -140,8 +140,8 @@ class JointProblem:
         )
         change[:, 3:] = (twists - self._scans.twists)[self._pairs[chosen]].reshape(-1, 6)
         jacobian = np.zeros((len(first), 9, 12))
-        by_second = between_jacobian(states[second], states[first])
-        jacobian[:, :3, :3], jacobian[:, :3, 6:9] = by_second[:, :, 3:], by_second[:, :, :3]
+        by_second, by_first = between_jacobians(states[second], states[first])
+        jacobian[:, :3, :3], jacobian[:, :3, 6:9] = by_first, by_second
         jacobian[:, 3:6, :6] = by_keyframes[first]
         jacobian[:, 6:, 6:] = by_keyframes[second]
         turned = np.swapaxes(jacobian, 1, 2)
