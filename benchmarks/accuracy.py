@@ -8,6 +8,8 @@ from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.campaign import Campaign, Provenance, call, positive
 from benchmarks.conditions import DEMANDED, UNTUNED, Condition
 from benchmarks.missions import Accuracy
@@ -18,7 +20,15 @@ from benchmarks.trials import Trial
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 
-__all__ = ["accuracy_page", "demanded_table", "main", "missed_bars", "planned", "untuned_table"]
+__all__ = [
+    "accuracy_page",
+    "calibration_table",
+    "demanded_table",
+    "main",
+    "missed_bars",
+    "planned",
+    "untuned_table",
+]
 
 TEMPLATE = "accuracy.md.jinja"
 UNEVEN = 2.5
@@ -65,6 +75,7 @@ def accuracy_page(results: Results, provenance: Provenance) -> str:
         demanded=demanded_table(results).markdown(),
         missed=missed_bars(results),
         dvl=_gains_of_dvl(results),
+        calibration=calibration_table(results).markdown(),
         alignment=f"{Configuration().dead_reckoning.alignment_time:g}",
         untuned={
             world: untuned_table(list(conditions), results).markdown()
@@ -100,6 +111,20 @@ def untuned_table(conditions: Sequence[Condition], results: Results) -> Table:
         for place in conditions
     ]
     return Table(conditions[0].world, ["setting", *figures], rows)
+
+
+def calibration_table(results: Results) -> Table:
+    """Return what is found out of head and speed of sound where there is a DVL."""
+    rows = []
+    for place in dict.fromkeys([*DEMANDED, *UNTUNED]):
+        if place.dvl:
+            series = results[place]
+            yaw = f"{series.mean('yaw'):+.2f} ± {series.mean('yaw_deviation'):.2f}"
+            scale = f"{series.mean('scale'):.4f} ± {series.mean('scale_deviation'):.4f}"
+            spreads = [f"{np.std(series.values(name)):.3g}" for name in ("yaw", "scale")]
+            rows.append([place.name, str(len(series.results)), yaw, spreads[0], scale, spreads[1]])
+    header = ["condition", "seeds", "head turned [deg]", "spread", "ranges times", "spread"]
+    return Table("Head against DVL", header, rows)
 
 
 def _cells(condition: Condition, series: Series) -> list[str]:

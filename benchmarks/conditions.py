@@ -148,7 +148,9 @@ UNTUNED = (
         ("clockwise", {"sonar": _head(rotation=Rotation.CLOCKWISE)}),
         ("no IMU", _NO_IMU),
         ("head misaligned by 2 deg", _MISALIGNED),
+        ("head misaligned by 2 deg, with DVL", {**_MISALIGNED, "dvl": True}),
         ("sound 1 % faster than assumed", _SOUND),
+        ("sound 1 % faster than assumed, with DVL", {**_SOUND, "dvl": True}),
     ),
     *_untuned(
         "marina",

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.jumps import largest_jumps
-from msss_graphslam.core.types import Estimate, Trajectory
+from msss_graphslam.core.types import Estimate, SonarCalibration, Trajectory
 from msss_graphslam.evaluation.errors import position_errors, start_end_gap
 from msss_graphslam.simulation.echo_model import EchoKind
 from msss_graphslam.simulation.inertial import NoiseLevel
@@ -61,7 +61,9 @@ class Accuracy:
     Mean position errors: ``anchored`` at the start, ``aligned`` to the truth, ``online`` as
     published at the time, anchored; ``gap`` between start and end, and the vehicle's ``true_gap``;
     ``jump``, the largest of the pose known online, and ``plain_jump`` without those of a first far
-    loop closure. ``turned`` is by how much the whole trajectory is turned [deg].
+    loop closure. ``turned`` is by how much the whole trajectory is turned [deg]. By ``yaw`` [deg]
+    the head is turned against the DVL, and ranges are ``scale`` times as long, as the estimator
+    sees it, both with their stated deviations; NaN where it says nothing of them.
     """
 
     anchored: float
@@ -72,6 +74,10 @@ class Accuracy:
     jump: float = 0.0
     plain_jump: float = 0.0
     turned: float = 0.0
+    yaw: float = np.nan
+    yaw_deviation: float = np.nan
+    scale: float = np.nan
+    scale_deviation: float = np.nan
 
 
 def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
@@ -88,7 +94,20 @@ def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
         jump=jump,
         plain_jump=plain_jump,
         turned=float(np.degrees(np.abs(np.mean(final.heading)))),
+        **_calibration(estimate.sonar_calibration),
     )
+
+
+def _calibration(found: SonarCalibration | None) -> dict[str, float]:
+    if found is None:
+        return {}
+    yaw, scale = np.sqrt(np.diag(found.covariance)).tolist()
+    return {
+        "yaw": float(np.degrees(found.yaw)),
+        "yaw_deviation": float(np.degrees(yaw)),
+        "scale": found.scale,
+        "scale_deviation": scale,
+    }
 
 
 def spelt(changes: Changes) -> list[str]:

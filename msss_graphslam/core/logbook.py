@@ -23,6 +23,7 @@ from msss_graphslam.core.types import (
     Estimate,
     Keyframe,
     Scan,
+    SonarCalibration,
     Stage,
     TwistError,
 )
@@ -48,6 +49,7 @@ class Logbook:
         self.constraints: list[Constraint] = []
         self.poses: Array = np.empty((0, 3))
         self.twist_error: TwistError | None = None
+        self._calibration: SonarCalibration | None = None
 
     def add_scan(self, scan: Scan) -> None:
         """Note the beams of a scan, and the scan if it is a keyframe's."""
@@ -78,6 +80,7 @@ class Logbook:
             keyframes=keyframes,
             first_scans=LaidOut(self.scans[: len(self.poses)]),
             constraints=tuple(self.constraints),
+            sonar_calibration=self._calibration,
         )
 
     def _keyframes_own(self) -> list[Scan]:
@@ -100,6 +103,7 @@ class Logbook:
             smoothed = self._smooth(lambda share: progress(0.5 + 0.5 * share))
         self.poses = smoothed.poses
         self.twist_error = TwistError(smoothed.twist, smoothed.twist_covariance)
+        self._calibration = smoothed.sonar_calibration
         return list(smoothed.covariances)
 
     def _refine(self, matcher: ScanMatcher, progress: Callable[[float], None]) -> None:

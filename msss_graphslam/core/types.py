@@ -31,6 +31,7 @@ __all__ = [
     "Odometry",
     "Reading",
     "Scan",
+    "SonarCalibration",
     "Stage",
     "Stamps",
     "Trajectory",
@@ -221,6 +222,19 @@ class Keyframe:
 
 
 @dataclass(frozen=True, slots=True)
+class SonarCalibration:
+    """By what the sonar's motion differs from that of a velocity sensor.
+
+    If the latter is right, the head points ``yaw`` [rad] further counter-clockwise than assumed,
+    and ranges are ``scale`` times as long. ``covariance`` (2, 2) is that of yaw and scale.
+    """
+
+    yaw: float
+    scale: float
+    covariance: Array
+
+
+@dataclass(frozen=True, slots=True)
 class TwistError:
     """The slow error of dead reckoning's twist that the sonar has shown.
 
@@ -296,6 +310,7 @@ class Estimate:
     something to publish.
     ``keyframes`` carry the scans in their final layout, ``first_scans`` the same scans as dead
     reckoning laid them out. ``constraints`` are all that were tried, in order.
+    ``sonar_calibration`` is None where no measured velocity tells of it.
     """
 
     estimator: str
@@ -305,3 +320,4 @@ class Estimate:
     keyframes: tuple[Keyframe, ...]
     first_scans: Sequence[Scan]
     constraints: tuple[Constraint, ...]
+    sonar_calibration: SonarCalibration | None = None

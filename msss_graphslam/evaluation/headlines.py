@@ -5,6 +5,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from msss_graphslam.core.types import SonarCalibration
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment
 from msss_graphslam.evaluation.errors import Statistics, start_end_gap
 from msss_graphslam.evaluation.wording import phrase
@@ -44,7 +47,18 @@ def headlines(assessments: Sequence[Assessment]) -> list[Headline]:
             f"{refused}",
             f"in {len(record.refused)} ways, {record.beams} beams used" if refused else "none",
         ),
+        *_calibration(record.estimate.sonar_calibration),
     ]
+
+
+def _calibration(found: SonarCalibration | None) -> list[Headline]:
+    if found is None:
+        return []
+    yaw, scale = np.sqrt(np.diag(found.covariance)).tolist()
+    note = (
+        f"\u00b1 {np.degrees(yaw):.1f}\u00b0; ranges \u00d7 {found.scale:.3f} \u00b1 {scale:.3f}"
+    )
+    return [Headline("head against DVL", f"{np.degrees(found.yaw):+.1f}\u00b0", note)]
 
 
 def _accuracy(run: Assessment) -> Headline:

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+
+from msss_graphslam.core.types import SonarCalibration
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.errors import PoseErrors, Statistics, start_end_gap
 
@@ -39,8 +42,22 @@ def summarise(assessment: Assessment) -> dict[str, Any]:
     if assessment.online_errors is not None:
         online = {assessment.estimator: assessment.online_errors}
         summary["online_position_error_m"] = _error_table(online)
+    calibration = record.estimate.sonar_calibration
+    if calibration is not None:
+        summary["sonar_calibration"] = _calibration_table(calibration)
     summary["configuration"] = {"estimator": assessment.estimator, **record.configuration}
     return summary
+
+
+def _calibration_table(calibration: SonarCalibration) -> dict[str, float]:
+    yaw, scale = np.sqrt(np.diag(calibration.covariance)).tolist()
+    figures = {
+        "mount_yaw_rad": calibration.yaw,
+        "mount_yaw_deviation_rad": yaw,
+        "range_scale": calibration.scale,
+        "range_scale_deviation": scale,
+    }
+    return {name: round(value, _DIGITS) for name, value in figures.items()}
 
 
 def _error_table(errors: Mapping[str, PoseErrors]) -> dict[str, dict[str, float]]:

@@ -11,6 +11,7 @@ import pytest
 
 from benchmarks.accuracy import (
     accuracy_page,
+    calibration_table,
     demanded_table,
     main,
     missed_bars,
@@ -135,3 +136,14 @@ def test_known_results_are_only_written(tmp_path: Path) -> None:
     main(["--seeds", "1", "--few-seeds", "1", *folders, "--page", str(page)])
     assert "--seeds 1 --few-seeds 1" in page.read_text(encoding="utf-8")
     assert not (tmp_path / "none").exists()
+
+
+def test_what_a_dvl_tells_of_the_head_is_shown_for_each_condition_with_one() -> None:
+    told = replace(GOOD, yaw=1.5, yaw_deviation=0.5, scale=1.004, scale_deviation=0.01)
+    results = {
+        place: Series([told, replace(told, yaw=2.5)]) if place.dvl else Series([GOOD])
+        for place in EVERYWHERE
+    }
+    table = calibration_table(results)
+    assert len(table.rows) == len({place for place in EVERYWHERE if place.dvl}) > 2
+    assert table.rows[0][1:] == ["2", "+2.00 ± 0.50", "0.5", "1.0040 ± 0.0100", "0"]

@@ -36,6 +36,14 @@ def test_solution_is_that_of_the_dense_equations(count: int) -> None:
     np.testing.assert_allclose(equations.solution(), expected, rtol=1e-7, atol=1e-9)
 
 
+def test_several_right_hand_sides_are_solved_at_once() -> None:
+    equations, whole, _ = chain(7)
+    sides = np.random.default_rng(2).normal(size=(21, 2))
+    found = equations.solved(sides)
+    np.testing.assert_array_equal(found[:3], 0.0)
+    np.testing.assert_allclose(whole @ found[3:], sides[3:], atol=1e-9)
+
+
 @pytest.mark.parametrize("count", [2, 64, 65, 66, 130])
 def test_covariances_are_the_blocks_of_the_inverse(count: int) -> None:
     equations, whole, _ = chain(count)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from synthetic_run import LAUNCH, synthetic_run, without_keyframes
 
+from msss_graphslam.core.types import SonarCalibration
 from msss_graphslam.evaluation.assessment import assess, dead_reckoned_points
+from msss_graphslam.evaluation.headlines import headlines
 from msss_graphslam.evaluation.result_table import evaluate_directory, result_table
 from msss_graphslam.evaluation.summary import summarise
 from msss_graphslam.results.directory import ResultDirectory
@@ -147,3 +149,19 @@ def test_a_directory_is_evaluated_as_the_run_was(assessment, tmp_path):
     ):
         assert rows[name].anchored.mean == pytest.approx(table[other].anchored.mean, abs=1e-8)
         assert rows[name].aligned.max == pytest.approx(table[other].aligned.max, abs=1e-8)
+
+
+def test_a_head_that_disagrees_with_the_velocity_sensor_is_told(assessment):
+    run = assessment.record
+    found = SonarCalibration(0.03, 1.005, np.diag([0.01, 0.02]) ** 2)
+    told = assess(replace(run, estimate=replace(run.estimate, sonar_calibration=found)))
+    assert summarise(told)["sonar_calibration"] == {
+        "mount_yaw_rad": 0.03,
+        "mount_yaw_deviation_rad": 0.01,
+        "range_scale": 1.005,
+        "range_scale_deviation": 0.02,
+    }
+    (line,) = (entry for entry in headlines([told]) if entry.name == "head against DVL")
+    assert line.value == "+1.7\u00b0"
+    assert line.note == "\u00b1 0.6\u00b0; ranges \u00d7 1.005 \u00b1 0.020"
+    assert len(headlines([assessment])) == len(headlines([told])) - 1

@@ -18,8 +18,9 @@ from msss_graphslam.core.smoothing.bent_pair import Pairing, pairings
 from msss_graphslam.core.smoothing.bent_scans import BentScans, applied, change_of
 from msss_graphslam.core.smoothing.joint_pairs import weights_of
 from msss_graphslam.core.smoothing.normal_equations import NormalEquations
+from msss_graphslam.core.smoothing.sonar_calibration import sonar_calibration, velocities_of
 from msss_graphslam.core.smoothing.twist_chain import TwistChain
-from msss_graphslam.core.types import Array, Scan
+from msss_graphslam.core.types import Array, Scan, SonarCalibration
 
 __all__ = ["SLACK", "JointProblem"]
 
@@ -84,6 +85,16 @@ class JointProblem:
         By the scan's own and the next keyframe.
         """
         return self._scans.twists_at(states)
+
+    def sonar_calibration(
+        self, equations: NormalEquations, states: Array
+    ) -> SonarCalibration | None:
+        """Return by what the sonar's motion differs from dead reckoning's, if that is observable.
+
+        ``equations`` are those of the solution, the states (n + 1, 3).
+        """
+        velocities = velocities_of(states, self._chain.durations)
+        return sonar_calibration(self._chain, equations, *self.twists(states), velocities)
 
     def forget(self) -> None:
         """Let go of what can be had again, for what comes after needs the memory."""

@@ -17,7 +17,7 @@ from msss_graphslam.core.graph.back_end import LAUNCH_VARIANCE
 from msss_graphslam.core.scans.motion_feedback import Persistence, offset_motion
 from msss_graphslam.core.scans.scan_generation import reckoned_motion
 from msss_graphslam.core.smoothing.joint_problem import JointProblem
-from msss_graphslam.core.types import Array, Scan
+from msss_graphslam.core.types import Array, Scan, SonarCalibration
 
 __all__ = ["Reach", "Smoothed", "smooth"]
 
@@ -54,6 +54,7 @@ class Smoothed:
     covariances: Array
     twist: Array
     twist_covariance: Array
+    sonar_calibration: SonarCalibration | None = None
 
 
 def smooth(
@@ -91,7 +92,8 @@ def _found(problem: JointProblem, states: Array, reach: float) -> Smoothed:
     covariances[0] = LAUNCH_VARIANCE * np.eye(3)
     twists, by_keyframes = problem.twists(states)
     spread = by_keyframes[-1] @ equations.covariance_of_last(2) @ by_keyframes[-1].T
-    return Smoothed(states[:-1], covariances[:-1], twists[-1], spread)
+    calibration = problem.sonar_calibration(equations, states)
+    return Smoothed(states[:-1], covariances[:-1], twists[-1], spread, calibration)
 
 
 def _end(scan: Scan, pose: Array, twist: Array) -> Array:

@@ -14,12 +14,15 @@ __all__ = ["NormalEquations"]
 
 
 class NormalEquations:
-    """The sum of what measurements say of ``count`` poses: H x = -g."""
+    """The sum of what measurements say of ``count`` poses: H x = -g.
+
+    ``gradient`` (3 count,) is g.
+    """
 
     def __init__(self, count: int) -> None:
         self._count = count
         self._whole: Any = None
-        self._gradient = np.zeros(3 * count)
+        self.gradient = np.zeros(3 * count)
         self._factors: Any = None
 
     def add(self, nodes: NDArray[np.intp], information: Array, gradient: Array) -> None:
@@ -36,7 +39,7 @@ class NormalEquations:
         size = 3 * self._count
         added = csc_matrix((information.ravel(), indices), shape=(size, size))
         self._whole = added if self._whole is None else self._whole + added
-        np.add.at(self._gradient, places, gradient)
+        np.add.at(self.gradient, places, gradient)
         self._factors = None
 
     def solution(self) -> Array:
@@ -44,7 +47,16 @@ class NormalEquations:
 
         Raises RuntimeError where the measurements leave one undetermined.
         """
-        return np.asarray(-self._factorised().solve(self._gradient[3:])).reshape(-1, 3)
+        return -self.solved(self.gradient)[3:].reshape(-1, 3)
+
+    def solved(self, sides: Array) -> Array:
+        """Return x of H x = b for ``sides`` b (3 count,) or (3 count, p); the first pose's is 0.
+
+        Raises RuntimeError where the measurements leave one undetermined.
+        """
+        result = np.zeros_like(sides)
+        result[3:] = self._factorised().solve(sides[3:])
+        return result
 
     def covariances(self) -> Array:
         """Return the covariances (count, 3, 3) of the poses, the first one's being zero."""
