@@ -51,8 +51,9 @@ Where a place holds many keyframes already and the scan is found there again, it
 (`core/graph/known_places.py`): the scan is located by the keyframes there, and no later scan is
 matched with it. So a scan is compared with a bounded number of others and tied to at most
 `association.most` of them, the smoother works on a part of the graph that does not grow, and the
-front end keeps no points of it. What still grows is small: reading all poses out of the graph, and
-the measured scans, which the refinement in the end makes anew.
+front end keeps no points of it. What still grows: the time that the smoother takes to look through
+all its keyframes in every update, and the memory of what was measured and published, of poses and
+of edges. Scans as the trajectory lays them out in the end are made when they are asked for.
 
 ## The whole
 

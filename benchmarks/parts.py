@@ -68,7 +68,7 @@ PARTS = (
     Part(
         "repeated matching",
         "consecutive scans matched once",
-        replacements=((f"{_CORE}.graph.front_end.ROUNDS", 1),),
+        replacements=((f"{_CORE}.graph.match_rounds.ROUNDS", 1),),
     ),
     Part(
         "odometry edges",
@@ -80,11 +80,6 @@ PARTS = (
         "contradiction test",
         "closures that contradict the graph are accepted",
         values=(("back_end.contradiction", 0.0),),
-    ),
-    Part(
-        "shape gate",
-        "candidates by distance alone",
-        values=(("association.shape_threshold", 2.0),),
     ),
     Part(
         "search by overlap",

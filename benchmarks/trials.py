@@ -23,6 +23,8 @@ from msss_graphslam.core.types import Estimate, Trajectory
 
 __all__ = ["Trial", "estimate_of", "results"]
 
+_Front = tuple[Changes, Alteration, bool]
+
 
 @dataclass(frozen=True, slots=True)
 class Trial:
@@ -50,7 +52,7 @@ class Trial:
 def results(trials: Iterable[Trial], flight: Flight) -> Iterator[tuple[Trial, Accuracy]]:
     """Run trials of one mission; what several of them share of the front end is made once."""
     planned = list(trials)
-    memories: dict[tuple[Changes, Alteration], FrontMemory] = {}
+    memories: dict[_Front, FrontMemory] = {}
     fronts = Counter(_front(trial) for trial in planned)
     for trial in planned:
         front = _front(trial)
@@ -95,7 +97,11 @@ def _part(trial: Trial) -> Part:
     return part_named(trial.without) if trial.without else WHOLE
 
 
-def _front(trial: Trial) -> tuple[Changes, Alteration]:
-    """Return what dead reckoning and scans depend on, beside the mission."""
+def _front(trial: Trial) -> _Front:
+    """Return what dead reckoning and scans depend on, beside the mission.
+
+    Estimators that go beyond the paper ask for more than scans: for parts of them.
+    """
     part = _part(trial)
-    return trial.values + (part.values if part.changes_scans else ()), trial.alteration
+    values = trial.values + (part.values if part.changes_scans else ())
+    return values, trial.alteration, ESTIMATORS[trial.estimator].goes_beyond

@@ -15,6 +15,8 @@ from msss_graphslam.core.types import Array, Scan, Stamps, Trajectory
 
 __all__ = ["BeamLog"]
 
+PLANAR = [0, 1, 5]
+
 
 class BeamLog:
     """One row a beam, in the order of their stamps."""
@@ -37,15 +39,19 @@ class BeamLog:
 
     @property
     def online(self) -> Trajectory:
-        """What a subscriber got at the time."""
-        stamps = np.array(self._online_stamps, dtype=np.int64)
-        return Trajectory(stamps, np.array(self._online_poses).reshape(-1, 6))
+        """What a subscriber got at the time; no copy, nothing can be added while it is held."""
+        stamps = np.asarray(self._online_stamps, dtype=np.int64)
+        return Trajectory(stamps, np.asarray(self._online_poses).reshape(-1, 6))
 
     @property
     def dead_reckoning(self) -> Trajectory:
         """The EKF's poses."""
         stamps = np.concatenate([np.empty(0, dtype=np.int64), *self._stamps])
-        return Trajectory(stamps, np.concatenate([np.empty((0, 6)), *self._reckoned]))
+        return self.dead_reckoning_at(stamps)
+
+    def dead_reckoning_at(self, stamps_ns: Stamps) -> Trajectory:
+        """Return the EKF's poses with the stamps (n,) of all beams, which are not copied."""
+        return Trajectory(stamps_ns, np.concatenate([np.empty((0, 6)), *self._reckoned]))
 
     def corrected(
         self, scans: Sequence[Scan], keyframe_poses: Array, solver: Solver, twist_error: Array
@@ -57,27 +63,20 @@ class BeamLog:
         the last it goes on with ``twist_error`` (3,) taken out.
         """
         reckoned = self.dead_reckoning
-        # One look at the planar part is a copy of it.
-        stamps, before = reckoned.stamps_ns, reckoned.planar
-        planar = before.copy()
+        # In place, interval by interval: none looks at what those before have corrected.
+        stamps, poses = reckoned.stamps_ns, reckoned.poses
         first_stamps = [scan.stamp_ns for scan in scans[: len(keyframe_poses)]]
         starts = np.searchsorted(stamps, np.array(first_stamps, dtype=np.int64))
         for number, (start, stop) in enumerate(pairwise(starts)):
-            origin = planar[start]
-            planar[start:stop] = compose(
-                keyframe_poses[number],
-                correct_motion(
-                    between(origin, before[start:stop]),
-                    between(origin, before[stop]),
-                    between(keyframe_poses[number], keyframe_poses[number + 1]),
-                    solver,
-                ).poses,
-            )
+            before = poses[start : stop + 1, PLANAR]
+            motion = between(before[0], before)
+            target = between(keyframe_poses[number], keyframe_poses[number + 1])
+            corrected = correct_motion(motion[:-1], motion[-1], target, solver).poses
+            poses[start:stop, PLANAR] = compose(keyframe_poses[number], corrected)
         if len(starts):
             rest = slice(starts[-1], None)
-            motion = between(before[starts[-1]], before[rest])
+            before = poses[rest, PLANAR]
             elapsed = (stamps[rest] - stamps[starts[-1]]) * 1e-9
-            planar[rest] = compose(keyframe_poses[-1], offset_motion(motion, elapsed, twist_error))
-        poses = reckoned.poses  # nobody else's
-        poses[:, [0, 1, 5]] = planar
+            motion = offset_motion(between(before[0], before), elapsed, twist_error)
+            poses[rest, PLANAR] = compose(keyframe_poses[-1], motion)
         return Trajectory(stamps, poses)

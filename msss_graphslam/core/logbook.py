@@ -13,6 +13,7 @@ from msss_graphslam.core.graph.refinement import refine, whole_graph
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
+from msss_graphslam.core.scans.corrected_keyframes import corrected_keyframes
 from msss_graphslam.core.scans.motion_feedback import persistence_of
 from msss_graphslam.core.scans.scan_correction import corrected_scans
 from msss_graphslam.core.smoothing.joint_pairs import first_reach, pairs_of
@@ -21,7 +22,6 @@ from msss_graphslam.core.types import (
     Array,
     Constraint,
     Estimate,
-    Keyframe,
     Scan,
     SonarCalibration,
     Stage,
@@ -69,15 +69,17 @@ class Logbook:
     def finish(self, progress: Callable[[float], None] = lambda _: None) -> Estimate:
         """Refine the graph if the recipe says so, and return everything."""
         covariances = self._settle(progress)
-        rows = zip(self.keyframe_scans(), self.poses, covariances, strict=True)
-        keyframes = tuple(Keyframe(*row) for row in rows)
+        solver = self._recipe.solver
         error = self._learned.mean if self._learned else np.zeros(3)
+        trajectory = self._beams.corrected(self.scans, self.poses, solver, error)
         return Estimate(
             estimator=self._recipe.name,
-            trajectory=self._beams.corrected(self.scans, self.poses, self._recipe.solver, error),
+            trajectory=trajectory,
             online=self._beams.online,
-            dead_reckoning=self._beams.dead_reckoning,
-            keyframes=keyframes,
+            dead_reckoning=self._beams.dead_reckoning_at(trajectory.stamps_ns),
+            keyframes=corrected_keyframes(
+                self._keyframes_own(), self.poses, covariances, solver, self._learned
+            ),
             first_scans=LaidOut(self.scans[: len(self.poses)]),
             constraints=tuple(self.constraints),
             sonar_calibration=self._calibration,

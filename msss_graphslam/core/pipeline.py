@@ -53,7 +53,7 @@ class Pipeline:
         self._reckon(self._dead_reckoning.start())
         self._add(self._scans.finish())
         # What comes needs the memory of the graph that has grown so far.
-        del self._slam
+        del self._slam, self._online
         return self._logbook.finish(progress)
 
     def _process_in_order(self, measurement: Measurement) -> None:
@@ -64,6 +64,7 @@ class Pipeline:
         if isinstance(measurement, Beam):
             self._note_online(measurement.stamp_ns)
             self._add(self._scans.add_beam(measurement))  # lines 4, 7 and 8
+            self._preview()
 
     def _reckon(self, odometry: list[Odometry]) -> None:
         for entry in odometry:
@@ -79,6 +80,16 @@ class Pipeline:
         if self._online is None:
             self._online = OnlinePose(self._latest, self._persistence)
         self._logbook.add_online(stamp_ns, self._online.at(self._latest, stamp_ns))
+
+    def _preview(self) -> None:
+        """Correct the online pose by the turn in progress, and nothing else."""
+        part = self._scans.part()
+        if part is None or self._online is None:
+            return
+        with self._stage("scan_matching"):
+            correction = self._slam.front_end.preview(part)
+        if correction is not None:
+            self._online.correct(correction)
 
     def _add(self, scans: list[Scan]) -> None:
         for scan in scans:

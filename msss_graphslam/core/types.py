@@ -317,7 +317,7 @@ class Estimate:
     trajectory: Trajectory
     online: Trajectory
     dead_reckoning: Trajectory
-    keyframes: tuple[Keyframe, ...]
+    keyframes: Sequence[Keyframe]
     first_scans: Sequence[Scan]
     constraints: tuple[Constraint, ...]
     sonar_calibration: SonarCalibration | None = None

@@ -8,7 +8,7 @@ moving topics follow in the order of time, at most five a second.
 
 import heapq
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +84,7 @@ def _moving(estimate: Estimate) -> Iterator[_Message]:
         yield stamp, "/tf", transforms
 
 
-def _known_poses(corrected: Trajectory, keyframes: tuple[Keyframe, ...]) -> dict[int, bytes]:
+def _known_poses(corrected: Trajectory, keyframes: Sequence[Keyframe]) -> dict[int, bytes]:
     """Return the corrected pose by stamp, as a message, where its covariance is known."""
     covariances = _beam_covariances(keyframes)
     stamps = corrected.stamps_ns.tolist()
@@ -111,7 +111,7 @@ def _scans(record: RunRecord) -> Iterator[_Message]:
             yield scan.end_stamp_ns, "/graph/constraints", message
 
 
-def _beam_covariances(keyframes: tuple[Keyframe, ...]) -> dict[int, Array]:
+def _beam_covariances(keyframes: Sequence[Keyframe]) -> dict[int, Array]:
     """Return the covariance (3, 3) of the corrected pose by stamp, for the beams of the scans."""
     covariances: dict[int, Array] = {}
     for keyframe in keyframes:

@@ -39,7 +39,7 @@ def made_up() -> Results:
 def test_a_loss_is_a_factor_on_the_mean() -> None:
     rows = {row[0]: row[2:] for row in loss_table("anchored", made_up()).rows}
     assert list(rows["loop closures"]) == ["1.00", "2.00", "1.00", "1.00"]
-    assert list(rows["shape gate"]) == ["1.00"] * len(WORLDS)
+    assert list(rows["overlap gate"]) == ["1.00"] * len(WORLDS)
     assert set(rows) == {part.name for part in PARTS}
 
 

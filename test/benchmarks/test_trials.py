@@ -18,7 +18,7 @@ from benchmarks.parts import PARTS, part_named
 from benchmarks.trials import Trial, estimate_of, results
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core import logbook, pipeline
-from msss_graphslam.core.graph import front_end
+from msss_graphslam.core.graph import front_end, match_rounds
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.types import ConstraintKind, Estimate
@@ -55,6 +55,7 @@ def test_a_trial_is_what_the_estimator_does(flight: Flight, whole: Estimate) -> 
 
 def test_a_shared_front_end_changes_no_result(flight: Flight) -> None:
     trials = [replace(TRIAL, without=part.name) for part in EVERYTHING[:4]]
+    trials += [replace(TRIAL, estimator=name) for name in ("dead_reckoning", "chen2015")]
     shared = dict(results([*trials, TRIAL], flight))
     for trial in trials:
         assert dict(results([trial], flight)) == {trial: shared[trial]}
@@ -69,7 +70,7 @@ def test_a_shared_front_end_works_once(flight: Flight, monkeypatch: pytest.Monke
             super().__init__(*arguments)  # type: ignore[arg-type]
 
     monkeypatch.setattr(pipeline, "DeadReckoning", Counting)
-    list(results([replace(TRIAL, without=name) for name in ("", "shape gate")], flight))
+    list(results([replace(TRIAL, without=name) for name in ("", "overlap gate")], flight))
     assert len(made) == 1
     trials = [replace(TRIAL, without=name) for name in ("", "gyro within a turn")]
     list(results([*trials, replace(TRIAL, alteration=Alteration.FOUR_BITS)], flight))
@@ -78,10 +79,15 @@ def test_a_shared_front_end_works_once(flight: Flight, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("part", [part.name for part in PARTS])
 def test_every_part_can_be_taken_out(part: str, flight: Flight) -> None:
-    before = (front_end.ROUNDS, front_end.MotionFeedback, logbook.smooth, logbook.refine)
+    before = (match_rounds.ROUNDS, front_end.MotionFeedback, logbook.smooth, logbook.refine)
     estimate = without(part, flight)
     assert np.isfinite(estimate.trajectory.poses).all()
-    assert before == (front_end.ROUNDS, front_end.MotionFeedback, logbook.smooth, logbook.refine)
+    assert before == (
+        match_rounds.ROUNDS,
+        front_end.MotionFeedback,
+        logbook.smooth,
+        logbook.refine,
+    )
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ def test_a_bare_scan_holds_nothing_that_was_not_measured_but_its_motion() -> Non
     assert scan.points is scan.body_points
     assert scan.covariances is scan.body_covariances
     assert scan.odometry.tolist() == scans()[0].odometry.tolist()
+    assert scan.body_points.base is None
 
 
 def test_laid_out_scans_are_a_sequence() -> None:

@@ -168,3 +168,16 @@ def test_online_poses_are_kept_apart_from_the_beams() -> None:
     np.testing.assert_array_equal(log.online.stamps_ns, [2])
     np.testing.assert_array_equal(log.online.poses, [np.arange(6.0)])
     assert len(log.dead_reckoning.stamps_ns) == 0
+
+
+def test_online_poses_are_not_copied_so_none_comes_while_they_are_held() -> None:
+    log = BeamLog()
+    log.add_online(2, np.arange(6.0))
+    held = log.online
+    with pytest.raises(BufferError):
+        log.add_online(3, np.zeros(6))
+    np.testing.assert_array_equal(held.poses, [np.arange(6.0)])
+    del held
+    log.add_online(3, np.zeros(6))
+    assert log.online.stamps_ns.tolist() == [2, 3]
+    assert log.online.poses.shape == (2, 6)

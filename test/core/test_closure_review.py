@@ -107,3 +107,25 @@ def test_poses_changed_in_place_are_seen() -> None:
     poses[1, 0] += 5.0
     verdicts = [review.judge(poses) for _ in range(PATIENCE)]
     assert verdicts[-1] == Verdict((0,), ())
+
+
+def test_one_by_one_they_are_judged_as_all_at_once() -> None:
+    """More than there is room for at first."""
+    rng = np.random.default_rng(5)
+    edges = [closure(distance) for distance in rng.uniform(0.5 * BOUND, 1.5 * BOUND, 300)]
+    one_by_one = ClosureReview(BOUND)
+    for edge in edges:
+        one_by_one.add([edge])
+    at_once = reviewed(*edges)
+    metres = [0.0] * PATIENCE + [0.1, 0.2] + [0.0] * PATIENCE
+    verdicts = [at_once.judge(moved(POSES, away)) for away in metres]
+    assert [one_by_one.judge(moved(POSES, away)) for away in metres] == verdicts
+    assert 100 < len(verdicts[PATIENCE - 1].withdrawn) < 200
+
+
+def test_streaks_go_on_while_more_closures_come() -> None:
+    review = reviewed(closure(2.0 * BOUND))
+    for _ in range(PATIENCE - 1):
+        assert review.judge(POSES) == NOTHING
+        review.add([closure(0.0)] * 100)
+    assert review.judge(POSES) == Verdict((0,), ())

@@ -181,16 +181,3 @@ def test_mahalanobis_does_not_depend_on_the_unit_of_length(length: float) -> Non
         squared_mahalanobis(poses * unit, covariances * scaled, pose * unit, covariance * scaled),
         squared_mahalanobis(poses, covariances, pose, covariance),
     )
-
-
-def test_keyframes_are_known_by_the_numbers_that_they_are_given() -> None:
-    earlier, current = with_current(3, 12)
-    plain = associate(*earlier, *current, Association(), most=3)
-    numbers = [10 * place for place in range(12)]
-    named = associate(*earlier, *current, Association(), most=3, numbers=numbers)
-    spread = associate(*earlier, *current, Association(), most=12, numbers=numbers)
-    assert plain
-    assert {candidate.index % 10 for candidate in named} == {0}
-    assert all(candidate.index <= 100 for candidate in named)
-    # Keyframes that are not neighbours in time may both be taken.
-    assert len(spread) >= len(associate(*earlier, *current, Association(), most=12))

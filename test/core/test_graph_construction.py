@@ -9,11 +9,11 @@ from synthetic_scans import basin
 from msss_graphslam.core.compounding import between, between_covariance
 from msss_graphslam.core.graph.data_association import Candidate
 from msss_graphslam.core.graph.graph_construction import (
-    Node,
     consecutive_constraint,
     loop_constraints,
     odometry_constraint,
 )
+from msss_graphslam.core.graph.keyframes import Node
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.types import Array, ConstraintKind, Scan
 
@@ -48,10 +48,7 @@ def nodes() -> list[Node]:
     rng = np.random.default_rng(0)
     walls = basin(rng)
     scans = [standing_scan(walls, pose, pose, k, rng) for k, pose in enumerate(POSES)]
-    return [
-        Node(scan, f"prepared {k}", scan, np.zeros(3), (k + 1) * SPREAD)
-        for k, scan in enumerate(scans)
-    ]
+    return [Node(scan, f"prepared {k}", scan, (k + 1) * SPREAD) for k, scan in enumerate(scans)]
 
 
 def test_the_odometry_edge_joins_the_last_two() -> None:
@@ -89,6 +86,11 @@ def test_every_accepted_candidate_is_matched_from_its_place() -> None:
         expected = between_covariance(POSES[number], (number + 1) * SPREAD, POSES[3], 4.0 * SPREAD)
         np.testing.assert_allclose(spread, expected)
     assert edges[0].figures == {"mahalanobis": 1.5, "shape_distance": 0.2, "overlap": 0.8}
+
+
+def test_a_figure_that_was_not_made_is_not_told() -> None:
+    (edge,) = loop_constraints(nodes(), POSES, [Candidate(1, 2.5)], RecordingMatcher())
+    assert edge.figures == {"mahalanobis": 2.5, "overlap": 0.8}
 
 
 def test_a_refused_candidate_is_kept_and_not_matched() -> None:

@@ -11,7 +11,7 @@ from small_mission import seconds_of, until
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
-from msss_graphslam.core.scans.scan_generator import ScanGenerator
+from msss_graphslam.core.scans.scan_generator import PART, ScanGenerator
 from msss_graphslam.core.types import Beam, Odometry, Scan
 
 CONFIGURATION = Configuration()
@@ -191,3 +191,57 @@ def test_without_odometry_there_are_no_scans() -> None:
 def test_without_beams_there_are_no_scans() -> None:
     assert generated(odometry()) == []
     assert generated([]) == []
+
+
+def parts(entries: Iterable[Beam | Odometry]) -> tuple[list[Scan], list[Scan]]:
+    """Return the parts of turns, asked for after every entry, and the scans."""
+    generator, found, scans = ScanGenerator(CONFIGURATION, Counter()), [], []
+    for entry in entries:
+        is_beam = isinstance(entry, Beam)
+        scans += generator.add_beam(entry) if is_beam else generator.add_odometry(entry)
+        part = generator.part()
+        if part is not None:
+            found.append(part)
+            assert generator.part() is None
+    return found, scans + generator.finish()
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_part_is_the_beginning_of_its_turn_and_ends_at_its_third(way: float) -> None:
+    heard = [replace(beam, bearing=way * beam.bearing) for beam in beams()]
+    found, scans = parts(by_stamp([*heard, *odometry()]))
+    assert 2 <= len(scans) - 1 <= len(found) <= len(scans)
+    for part, scan in zip(found, scans, strict=False):
+        count = len(part.beam_stamps_ns)
+        np.testing.assert_array_equal(part.beam_stamps_ns, scan.beam_stamps_ns[:count])
+        np.testing.assert_allclose(part.reckoned[:-1], scan.reckoned[:count], atol=1e-9)
+        bearings = {beam.stamp_ns: beam.bearing for beam in heard}
+        looked = np.unwrap([bearings[int(stamp)] for stamp in part.beam_stamps_ns])
+        swept = np.abs(looked - looked[0])
+        assert swept[-2] < PART - 1e-9
+        assert swept[-1] >= PART - 1e-9
+        assert not part.complete
+
+
+def test_parts_leave_the_scans_as_they_are() -> None:
+    entries = by_stamp([*beams(), *odometry()])
+    assert contents(parts(entries)[1]) == contents(generated(entries))
+
+
+def test_a_part_waits_for_its_odometry_and_not_beyond_its_turn() -> None:
+    scans = generated(by_stamp([*beams(), *odometry()]))
+    third = len(scans[0].beam_stamps_ns) // 3 + 2
+    generator = ScanGenerator(CONFIGURATION, Counter())
+    for beam in beams()[:third]:
+        generator.add_beam(beam)
+    assert generator.part() is None
+    covering = [entry for entry in odometry() if entry.stamp_ns <= beams()[third].stamp_ns]
+    for entry in covering:
+        generator.add_odometry(entry)
+    assert generator.part() is not None
+    late = ScanGenerator(CONFIGURATION, Counter())
+    for beam in beams()[: len(scans[0].beam_stamps_ns) + 1]:
+        late.add_beam(beam)
+    for entry in odometry():
+        late.add_odometry(entry)
+    assert late.part() is None

@@ -18,7 +18,7 @@ class Association:
     )
     shape_threshold: float = parameter(
         0.45,
-        "St: largest distance of the angle histograms",
+        "St: largest distance of the angle histograms (chen2015 only)",
         minimum=0.0,
         maximum=2.0,
         source="Algorithm 3",

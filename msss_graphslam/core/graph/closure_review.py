@@ -6,7 +6,7 @@
 # wrong is taken out, and put back where later ones show it to be right.
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ LAYOUT = np.diag([0.15**2, 0.15**2, 0.02**2])
 
 PATIENCE = 3
 """So many updates in a row a closure must disagree to be withdrawn, or agree to come back."""
+
+FIRST_ROOM = 64
+"""For so many closures at first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,56 +42,90 @@ class ClosureReview:
 
     def __init__(self, bound: float) -> None:
         self._bound = bound
-        self._ends = np.empty((0, 2), dtype=np.intp)
-        self._relative = np.empty((0, 3))
-        self._information = np.empty((0, 3, 3))
-        self._inside = np.empty(0, dtype=bool)
-        self._streaks = np.empty(0, dtype=np.intp)
-        self._distances = np.empty(0)
+        self._count = 0
+        self._kept = _Closures.empty(FIRST_ROOM)
         self._poses = np.empty((0, 3))
 
     def add(self, edges: Sequence[Constraint]) -> None:
         """Take note of closures that the graph has taken."""
         if not edges:
             return
+        first, self._count = self._count, self._count + len(edges)
+        while self._count > len(self._kept.ends):
+            self._kept = self._kept.doubled()
+        new = self._kept.part(first, self._count)
         spreads = np.array([edge.covariance for edge in edges]) + LAYOUT
-        ends = np.array([(edge.first, edge.second) for edge in edges], dtype=np.intp)
-        self._ends = np.concatenate([self._ends, ends])
-        relative = np.array([edge.relative_pose for edge in edges])
-        self._relative = np.concatenate([self._relative, relative])
-        self._information = np.concatenate([self._information, np.linalg.inv(spreads)])
-        self._inside = np.concatenate([self._inside, np.ones(len(edges), dtype=bool)])
-        self._streaks = np.concatenate([self._streaks, np.zeros(len(edges), dtype=np.intp)])
-        self._distances = np.concatenate([self._distances, np.full(len(edges), np.nan)])
+        new.ends[:] = [(edge.first, edge.second) for edge in edges]
+        new.relative[:] = [edge.relative_pose for edge in edges]
+        new.information[:] = np.linalg.inv(spreads)
+        new.inside[:], new.streaks[:], new.distances[:] = True, 0, np.nan
 
     def judge(self, poses: Array) -> Verdict:
         """Compare all closures with the poses (n, 3) after an update."""
-        self._follow(poses)
-        changes = (self._distances > self._bound) == self._inside
-        self._streaks = np.where(changes, self._streaks + 1, 0)
-        due = self._streaks >= PATIENCE
+        closures = self._kept.part(0, self._count)
+        self._follow(closures, poses)
+        changes = (closures.distances > self._bound) == closures.inside
+        closures.streaks[:] = np.where(changes, closures.streaks + 1, 0)
+        due = closures.streaks >= PATIENCE
         withdrawn, readmitted = (
-            np.flatnonzero(due & side) for side in (self._inside, ~self._inside)
+            np.flatnonzero(due & side) for side in (closures.inside, ~closures.inside)
         )
-        self._inside ^= due
-        self._streaks[due] = 0
+        closures.inside[:] ^= due
+        closures.streaks[due] = 0
         return Verdict(tuple(withdrawn.tolist()), tuple(readmitted.tolist()))
 
-    def _follow(self, poses: Array) -> None:
+    def _follow(self, closures: "_Closures", poses: Array) -> None:
         """Measure again the closures that are new or whose keyframes have moved."""
         moved = np.ones(len(poses), dtype=bool)
         known = min(len(poses), len(self._poses))
         moved[:known] = (poses[:known] != self._poses[:known]).any(axis=1)
-        again = np.flatnonzero(moved[self._ends].any(axis=1) | np.isnan(self._distances))
-        self._distances[again] = self._squared_distances(poses, again)
+        first, second = closures.ends.T
+        again = np.flatnonzero(moved[first] | moved[second] | np.isnan(closures.distances))
+        closures.distances[again] = _squared_distances(closures, poses, again)
         self._poses = poses.copy()
 
-    def _squared_distances(self, poses: Array, chosen: NDArray[np.intp]) -> Array:
-        first, second = (poses[ends] for ends in self._ends[chosen].T)
-        away = second - first
-        cosine, sine = np.cos(first[:, 2]), np.sin(first[:, 2])
-        along = cosine * away[:, 0] + sine * away[:, 1]
-        across = cosine * away[:, 1] - sine * away[:, 0]
-        off = np.stack([along, across, away[:, 2]], axis=1) - self._relative[chosen]
-        off[:, 2] = wrap(off[:, 2])
-        return np.asarray(np.einsum("ni,nij,nj->n", off, self._information[chosen], off))
+
+@dataclass(frozen=True, slots=True)
+class _Closures:
+    """Closures as rows (n,): kept with room for more, as there is one call for every scan."""
+
+    ends: NDArray[np.intp]
+    relative: Array
+    information: Array
+    inside: NDArray[np.bool_]
+    streaks: NDArray[np.intp]
+    distances: Array
+
+    @staticmethod
+    def empty(count: int) -> "_Closures":
+        return _Closures(
+            np.empty((count, 2), dtype=np.intp),
+            np.empty((count, 3)),
+            np.empty((count, 3, 3)),
+            np.empty(count, dtype=bool),
+            np.empty(count, dtype=np.intp),
+            np.empty(count),
+        )
+
+    def part(self, start: int, stop: int) -> "_Closures":
+        """Return some of the rows, which are these very ones."""
+        rows = slice(start, stop)
+        return _Closures(*(getattr(self, entry.name)[rows] for entry in fields(self)))
+
+    def doubled(self) -> "_Closures":
+        """Return the same with twice the room."""
+        larger = _Closures.empty(2 * len(self.ends))
+        for entry in fields(self):
+            getattr(larger, entry.name)[: len(self.ends)] = getattr(self, entry.name)
+        return larger
+
+
+def _squared_distances(closures: _Closures, poses: Array, chosen: NDArray[np.intp]) -> Array:
+    first, second = (poses[ends] for ends in closures.ends[chosen].T)
+    away = second - first
+    cosine, sine = np.cos(first[:, 2]), np.sin(first[:, 2])
+    along = cosine * away[:, 0] + sine * away[:, 1]
+    across = cosine * away[:, 1] - sine * away[:, 0]
+    off = np.stack([along, across, away[:, 2]], axis=1) - closures.relative[chosen]
+    off[:, 2] = wrap(off[:, 2])
+    return np.asarray(np.einsum("ni,nij,nj->n", off, closures.information[chosen], off))

@@ -20,14 +20,14 @@ SMALLEST_EIGENVALUE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """An earlier keyframe near enough to be the same place, and whether its shape agrees.
+    """An earlier keyframe near enough to be the same place, and why it is not matched, if so.
 
-    ``mahalanobis`` is D_M of (11), ``shape_distance`` D_S of (13).
+    ``mahalanobis`` is D_M of (11), ``shape_distance`` D_S of (13), None where it does not count.
     """
 
     index: int
     mahalanobis: float
-    shape_distance: float
+    shape_distance: float | None = None
     refusal: str = ""
 
     @property
@@ -44,8 +44,6 @@ def associate(
     current_covariance: Array,
     current_descriptor: Array,
     config: Association,
-    most: int | None = None,
-    numbers: Sequence[int] | None = None,
 ) -> list[Candidate]:
     """Return the keyframes inside the Mahalanobis gate, in order; Algorithm 3.
 
@@ -64,31 +62,14 @@ def associate(
         (3,), (3, 3) and the shape descriptor of the current scan.
     config
         The thresholds Mt and St; both distances must lie below them.
-    most
-        How many to accept at most, nearest first; None for all, as the paper does.
-    numbers
-        The n keyframes' numbers, by which candidates are known; counted from 0 where None.
     """
-    names = range(len(poses)) if numbers is None else numbers
     distances = squared_mahalanobis(poses[:-1], covariances[:-1], current_pose, current_covariance)
-    inside = np.flatnonzero(distances < config.mahalanobis_threshold)
     candidates: list[Candidate] = []
-    # Deviation: with ``most`` the nearest are taken, and of neighbours in time one: they say much
-    # the same, and the work for a scan stays the same however many have been there before.
-    order = inside if most is None else inside[np.argsort(distances[inside], kind="stable")]
-    for place in map(int, order):
-        index = names[place]
-        if most is not None and not _is_wanted(index, candidates, most):
-            continue
-        shape = shape_distance(descriptors[place], current_descriptor)
+    for index in map(int, np.flatnonzero(distances < config.mahalanobis_threshold)):
+        shape = shape_distance(descriptors[index], current_descriptor)
         refusal = "" if shape < config.shape_threshold else "shape_differs"
-        candidates.append(Candidate(index, float(distances[place]), shape, refusal))
-    return sorted(candidates, key=lambda candidate: candidate.index)
-
-
-def _is_wanted(index: int, candidates: Sequence[Candidate], most: int) -> bool:
-    accepted = [candidate.index for candidate in candidates if candidate.accepted]
-    return len(accepted) < most and all(abs(index - other) > 1 for other in accepted)
+        candidates.append(Candidate(index, float(distances[index]), shape, refusal))
+    return candidates
 
 
 def squared_mahalanobis(poses: Array, covariances: Array, pose: Array, covariance: Array) -> Array:

@@ -3,37 +3,21 @@
 """Scan matching and pose graph construction, Algorithm 4."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from msss_graphslam.core.compounding import between, between_covariance
 from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.graph.data_association import Candidate
+from msss_graphslam.core.graph.keyframes import Node
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.matching.matchers import ScanMatcher
-from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
+from msss_graphslam.core.matching.wide_search import match_widely
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["Node", "consecutive_constraint", "loop_constraints", "matched", "odometry_constraint"]
-
-
-@dataclass
-class Node:
-    """A keyframe as the front end keeps it.
-
-    ``scan`` in its present layout and ``prepared`` for the matcher, ``first_scan`` as dead
-    reckoning laid it out, its ``descriptor``, and ``covariance`` (3, 3) of its pose when it was
-    added, which later poses only make smaller. ``is_place``: whether later scans are matched with
-    it. Of the scans only stamp and odometry are left when two others have followed.
-    """
-
-    scan: Scan
-    prepared: Any
-    first_scan: Scan
-    descriptor: Array
-    covariance: Array
-    is_place: bool = True
+__all__ = ["consecutive_constraint", "loop_constraints", "matched", "odometry_constraint"]
 
 
 def odometry_constraint(
@@ -41,7 +25,8 @@ def odometry_constraint(
 ) -> Constraint:
     """Return the edge U_i of equation 1 from the last keyframe but one to the last."""
     last = len(nodes) - 1
-    return Constraint(ConstraintKind.ODOMETRY, last - 1, last, relative_pose, covariance)
+    # A copy: the pose may be the last of a whole motion, which a day of edges would keep.
+    return Constraint(ConstraintKind.ODOMETRY, last - 1, last, relative_pose.copy(), covariance)
 
 
 def consecutive_constraint(
@@ -67,20 +52,23 @@ def loop_constraints(
     poses: Array,
     candidates: Sequence[Candidate],
     matcher: ScanMatcher,
+    *,
+    widely: bool = False,
 ) -> list[Constraint]:
     """Algorithm 4, lines 8 to 13: match the last keyframe with every associated one.
 
-    ``poses`` (n, 3) are those of all nodes. Candidates that were refused stay refused.
+    ``poses`` (n, 3) are those of all nodes. Candidates that were refused stay refused. ``widely``
+    searches all that the covariance of a guess leaves open.
     """
+    match = partial(match_widely, matcher) if widely else matcher.match
     constraints = []
     current = len(nodes) - 1
     for candidate in candidates:
         node = nodes[candidate.index]
         pose = poses[candidate.index]
-        figures = {
-            "mahalanobis": candidate.mahalanobis,
-            "shape_distance": candidate.shape_distance,
-        }
+        figures = {"mahalanobis": candidate.mahalanobis}
+        if candidate.shape_distance is not None:
+            figures["shape_distance"] = candidate.shape_distance
         initial = between(pose, poses[current])  # line 9
         covariance = between_covariance(  # line 10
             pose, node.covariance, poses[current], nodes[current].covariance
@@ -95,7 +83,7 @@ def loop_constraints(
             figures,
         )
         if candidate.accepted:
-            result = matcher.match(node.prepared, nodes[current].prepared, initial, covariance)
+            result = match(node.prepared, nodes[current].prepared, initial, covariance)
             guess = matched(guess, result)
         constraints.append(guess)
     return constraints

@@ -28,9 +28,6 @@ __all__ = ["Refined", "refine", "whole_graph"]
 DOUBT = 7.81
 """Squared Mahalanobis distance that 5 % of true displacements exceed (three numbers)."""
 
-SETTLED = ("shape_differs", KNOWN_BETTER)
-"""Refusals that another layout does not change, or that no match is to change."""
-
 UNCERTAINTY = np.diag([0.15**2, 0.15**2, 0.02**2])
 """How far off a pair's displacement may still be before it is matched again (3, 3)."""
 
@@ -119,7 +116,7 @@ class _Layout:
 
 def _doubtful(constraint: Constraint, poses: Array) -> bool:
     """Whether a match was refused, or does not fit the poses."""
-    if constraint.kind is ConstraintKind.ODOMETRY or constraint.refusal in SETTLED:
+    if constraint.kind is ConstraintKind.ODOMETRY or constraint.refusal == KNOWN_BETTER:
         return False
     error = between(poses[constraint.first], poses[constraint.second]) - constraint.relative_pose
     error[2] = wrap(error[2])

@@ -16,10 +16,13 @@ __all__ = ["LaidOut", "bare"]
 
 def bare(scan: Scan) -> Scan:
     """Return what was measured, with the motion; the layout is that of a vehicle at rest."""
+    # The two columns alone, not the three of which they may be a part.
+    points = scan.body_points.copy()
     return replace(
         scan,
         motion_covariances=np.empty((0, 3, 3)),
-        points=scan.body_points,
+        body_points=points,
+        points=points,
         covariances=scan.body_covariances,
     )
 

@@ -128,6 +128,16 @@ class TurnDetector(Generic[Item]):
         self._direction = 0.0
         self._least_step = FULL_TURN  # a lost beam makes a step longer, never shorter
 
+    @property
+    def swept(self) -> float:
+        """How far the head has turned in the turn in progress [rad]."""
+        return self._swept
+
+    def so_far(self) -> Turn[Item]:
+        """Return the turn in progress, which must have begun; it ends with its last reading."""
+        readings = list(self._readings)
+        return Turn(readings, readings[-1].stamp_ns, self._swept, complete=False)
+
     def add(self, reading: Item) -> Turn[Item] | None:
         """Take in one reading; return the turn that it ends, of which it is not a part.
 

@@ -6,16 +6,25 @@ from collections import Counter
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter, reject_ghosts
 from msss_graphslam.core.scans.history import DeadReckoningHistory, Turn, TurnDetector
 from msss_graphslam.core.scans.scan_generation import generate_scan
 from msss_graphslam.core.types import Beam, Odometry, Reading, Scan, Stage
 
-__all__ = ["BLOCK", "ScanGenerator"]
+__all__ = ["BLOCK", "PART", "ScanGenerator"]
 
 BLOCK = 32
 """So many beams are segmented at once, which takes half the time of one by one."""
+
+PART = 2.0 * np.pi / 3.0
+"""When the head has swept so much of a turn [rad], what it has heard can be had as a part.
+
+A scan tells of its middle. With a part after a third of a turn, each of the two is at most 5/6 of
+a turn old when the other comes; without it, a scan is 3/2 of a turn old when the next comes.
+"""
 
 
 @dataclass(slots=True)
@@ -46,6 +55,8 @@ class ScanGenerator:
         self._turns: TurnDetector[_Heard] = TurnDetector(configuration.scanning, refused)
         self._unread: list[tuple[Beam, _Heard]] = []
         self._waiting: list[Turn[Reading]] = []
+        self._part: Turn[_Heard] | None = None
+        self._was_cut = False
         self._history = DeadReckoningHistory()
 
     @property
@@ -64,14 +75,28 @@ class ScanGenerator:
         turn = self._turns.add(heard)
         if turn is not None:
             self._waiting.append(self._read(turn))
+            self._part, self._was_cut = None, False
         elif len(self._unread) == BLOCK:
             self._segment()
+        if not self._was_cut and self._turns.swept >= PART:
+            self._part, self._was_cut = self._turns.so_far(), True
         return self._covered()
 
     def add_odometry(self, odometry: Odometry) -> list[Scan]:
         """Algorithm 1, line 6, for one odometry, in the order of their stamps."""
         self._history.append(odometry)
         return self._covered()
+
+    def part(self) -> Scan | None:
+        """Return the first third of the turn in progress, once, when the odometry covers it.
+
+        Its beams come again in the scan of the whole turn.
+        """
+        part = self._part
+        if part is None or self._waiting or not self._history.covers(part.end_ns):
+            return None
+        self._part = None
+        return self._laid_out(self._read(part))
 
     def finish(self) -> list[Scan]:
         """Return what is left at the end, also of a turn that the odometry does not cover."""
@@ -104,9 +129,12 @@ class ScanGenerator:
         return scans
 
     def _generate(self, turn: Turn[Reading]) -> Scan:
+        scan = self._laid_out(turn)
+        self._history.forget_before(turn.end_ns)  # lines 23 and 24
+        return scan
+
+    def _laid_out(self, turn: Turn[Reading]) -> Scan:
         with self._stage("scan_generation"):
             if turn.usable:
                 turn.readings = reject_ghosts(turn.readings, self._configuration.segmentation)
-            scan = generate_scan(turn, self._history, self._configuration.sonar)  # line 8
-        self._history.forget_before(turn.end_ns)  # lines 23 and 24
-        return scan
+            return generate_scan(turn, self._history, self._configuration.sonar)  # line 8

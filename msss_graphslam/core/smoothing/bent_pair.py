@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from msss_graphslam.core.matching.alignment import CAUCHY, SAME_SIDE
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.matching.point_to_line import CAUCHY, SAME_SIDE
 from msss_graphslam.core.smoothing.bent_scan import BentScan, Hanging, Vectors, vectors
 from msss_graphslam.core.types import Array
 

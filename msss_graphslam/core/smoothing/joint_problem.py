@@ -61,10 +61,7 @@ class JointProblem:
         self._moving, self._lines = np.vstack([self._pairs, self._pairs[:, ::-1]]).T
         self._parts = np.tile(self._pairs.max(axis=1) // TOGETHER, 2)
         self._weights = weights_of(self._pairs, len(scans))
-        # First nothing is paired anywhere.
-        self._reach = np.nan
-        self._displacements = np.full((len(pairs), 3), np.nan)
-        self._information, self._gradient = np.zeros((len(pairs), 9, 9)), np.zeros((len(pairs), 9))
+        self._pair_nothing()
 
     def linearised(self, states: Array, reach: float) -> NormalEquations:
         """Return the normal equations at the states (n + 1, 3)."""
@@ -99,6 +96,13 @@ class JointProblem:
     def forget(self) -> None:
         """Let go of what can be had again, for what comes after needs the memory."""
         self._scans.forget()
+        self._pair_nothing()
+
+    def _pair_nothing(self) -> None:
+        count = len(self._pairs)
+        self._reach = np.nan
+        self._displacements = np.full((count, 3), np.nan)
+        self._information, self._gradient = np.zeros((count, 9, 9)), np.zeros((count, 9))
 
     def _pair_moved(self, displacements: Array, bent: NDArray[np.bool_], reach: float) -> None:
         """Pair anew the pairs of scans that were bent or whose displacement has moved."""

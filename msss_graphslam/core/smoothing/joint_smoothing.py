@@ -88,11 +88,12 @@ def smooth(
 def _found(problem: JointProblem, states: Array, reach: float) -> Smoothed:
     equations = problem.linearised(states, reach)
     problem.forget()
-    covariances = equations.covariances()
-    covariances[0] = LAUNCH_VARIANCE * np.eye(3)
     twists, by_keyframes = problem.twists(states)
     spread = by_keyframes[-1] @ equations.covariance_of_last(2) @ by_keyframes[-1].T
     calibration = problem.sonar_calibration(equations, states)
+    # Last, as it does without what the others need.
+    covariances = equations.covariances()
+    covariances[0] = LAUNCH_VARIANCE * np.eye(3)
     return Smoothed(states[:-1], covariances[:-1], twists[-1], spread, calibration)
 
 

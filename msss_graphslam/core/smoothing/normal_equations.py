@@ -60,6 +60,7 @@ class NormalEquations:
 
     def covariances(self) -> Array:
         """Return the covariances (count, 3, 3) of the poses, the first one's being zero."""
+        self._factors = None  # They take memory, and are no help here.
         result = np.zeros((self._count, 3, 3))
         result[1:] = pose_covariances(self._whole[3:, 3:])
         return result

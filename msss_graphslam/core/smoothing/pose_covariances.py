@@ -6,14 +6,27 @@ In a Bayes tree (M. Kaess et al., IJRR 31, 2012) a clique depends on the one abo
 the root down, the covariance of each follows from that of its parent.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
-import gtsam
 import numpy as np
 
+from msss_graphslam.core.smoothing.cliques import Clique, Numbers, cliques, top_down
 from msss_graphslam.core.types import Array
 
 __all__ = ["pose_covariances"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Conditional:
+    """A clique's own poses x given its shared ones y: R x + S y = 0 with unit noise.
+
+    ``own`` is R, ``shared`` S; ``places`` (k,) are those of y in the clique above.
+    """
+
+    own: Array
+    shared: Array
+    places: Numbers
 
 
 def pose_covariances(information: Any) -> Array:
@@ -22,55 +35,95 @@ def pose_covariances(information: Any) -> Array:
     ``information`` (3 n, 3 n) is a sparse matrix of SciPy's, symmetric. Raises RuntimeError where
     it leaves a pose undetermined.
     """
+    blocks = information.tobsr((3, 3))
+    tree = cliques(blocks)
+    conditionals = _eliminated(blocks, tree)
     covariances = np.full((information.shape[0] // 3, 3, 3), np.nan)
-    nowhere: dict[int, int] = {}
-    pending = [(root, nowhere, np.empty((0, 0))) for root in _bayes_tree(information).roots()]
+    nothing = np.empty((0, 0))
+    pending = [(number, nothing) for number, clique in enumerate(tree) if clique.above is None]
     while pending:
-        clique, places_above, above = pending.pop()
-        conditional = clique.conditional()
-        keys, own = conditional.keys(), len(conditional.R()) // 3
-        shared = [places_above[key] for key in keys[own:]]
-        joint = _joint(conditional.R(), conditional.S(), _chosen(above, shared))
-        for place, key in enumerate(keys[:own]):
-            covariances[key] = _chosen(joint, [place])
-        places = {key: place for place, key in enumerate(keys)}
-        pending += [(clique[child], places, joint) for child in range(clique.nrChildren())]
+        number, above = pending.pop()
+        joint = _joint(conditionals.pop(number), above)
+        for place, pose in enumerate(tree[number].own):
+            covariances[pose] = joint[3 * place : 3 * place + 3, 3 * place : 3 * place + 3]
+        pending += [(child, joint) for child in tree[number].below]
     if not np.isfinite(covariances).all():
         raise RuntimeError("a pose is in no measurement")
     return covariances
 
 
-def _bayes_tree(information: Any) -> gtsam.GaussianBayesTree:
-    blocks = information.tobsr((3, 3))
-    graph, none, zero = gtsam.GaussianFactorGraph(), np.zeros((3, 3)), np.zeros(3)
-    for row in range(len(blocks.indptr) - 1):
-        for place in range(blocks.indptr[row], blocks.indptr[row + 1]):
-            column, block = int(blocks.indices[place]), blocks.data[place]
-            if column == row:
-                graph.push_back(gtsam.HessianFactor(row, block, zero, 0.0))
-            elif column > row:
-                factor = gtsam.HessianFactor(row, column, none, block, zero, none, zero, 0.0)
-                graph.push_back(factor)
-    return graph.eliminateMultifrontal(gtsam.Ordering.ColamdGaussianFactorGraph(graph))
+def _eliminated(blocks: Any, tree: list[Clique]) -> dict[int, _Conditional]:
+    """Return by number what each clique's poses depend on, found from the leaves to the root."""
+    found: dict[int, _Conditional] = {}
+    fronts: dict[int, Array] = {}
+    place_of = np.empty(len(blocks.indptr) - 1, dtype=np.intp)
+    for number in reversed(top_down(tree)):
+        clique = tree[number]
+        front = fronts.pop(number) if number in fronts else _empty(clique)
+        _add_measured(front, blocks, clique)
+        own, shared, left = _without_own(front, 3 * len(clique.own))
+        places = clique.shared
+        if clique.above is not None:
+            above = tree[clique.above]
+            place_of[above.poses] = np.arange(len(above.poses))
+            places = place_of[clique.shared]
+            if clique.above not in fronts:
+                fronts[clique.above] = _empty(above)
+            rows = _rows(places)
+            fronts[clique.above][np.ix_(rows, rows)] += left
+        found[number] = _Conditional(own, shared, places)
+    return found
 
 
-def _joint(own: Array, shared: Array, above: Array) -> Array:
+def _empty(clique: Clique) -> Array:
+    size = 3 * len(clique.poses)
+    return np.zeros((size, size))
+
+
+def _add_measured(front: Array, blocks: Any, clique: Clique) -> None:
+    """Add what was measured of a clique's own poses: their rows of the information."""
+    place_of = {pose: place for place, pose in enumerate(clique.poses.tolist())}
+    for place, pose in enumerate(clique.own):
+        row = slice(blocks.indptr[pose], blocks.indptr[pose + 1])
+        for other, block in zip(blocks.indices[row].tolist(), blocks.data[row], strict=True):
+            if other in place_of:
+                column = place_of[other]
+                front[3 * place : 3 * place + 3, 3 * column : 3 * column + 3] += block
+
+
+def _without_own(front: Array, count: int) -> tuple[Array, Array, Array]:
+    """Eliminate the first ``count`` rows; return R and S of them and what is left."""
+    try:
+        lower = np.linalg.cholesky(front[:count, :count])
+    except np.linalg.LinAlgError:
+        raise RuntimeError("the measurements leave a pose undetermined") from None
+    shared: Array = np.linalg.solve(lower, front[:count, count:])
+    return np.asarray(lower.T), shared, front[count:, count:] - shared.T @ shared
+
+
+def _joint(conditional: _Conditional, above: Array) -> Array:
     """Return the covariance of a clique's own poses and those that it shares with its parent.
 
-    ``own`` R and ``shared`` S are those of R x + S y = 0 with unit noise, ``above`` that of y.
+    ``above`` is that of the parent.
     """
-    inverse = np.linalg.inv(own)
-    gain = -inverse @ shared
-    count = len(own)
-    joint = np.empty((count + len(above), count + len(above)))
-    joint[count:, count:] = above
-    joint[:count, count:] = gain @ above
+    shared = _chosen(above, conditional.places)
+    inverse = np.linalg.inv(conditional.own)
+    gain = -inverse @ conditional.shared
+    count = len(conditional.own)
+    joint = np.empty((count + len(shared), count + len(shared)))
+    joint[count:, count:] = shared
+    joint[:count, count:] = gain @ shared
     joint[count:, :count] = joint[:count, count:].T
     joint[:count, :count] = inverse @ inverse.T + joint[:count, count:] @ gain.T
     return joint
 
 
-def _chosen(covariance: Array, poses: list[int]) -> Array:
+def _chosen(covariance: Array, poses: Numbers) -> Array:
     """Return the covariance of some of the poses."""
-    places = (3 * np.array(poses, dtype=np.intp)[:, None] + np.arange(3)).ravel()
-    return np.asarray(covariance[np.ix_(places, places)])
+    rows = _rows(poses)
+    return np.asarray(covariance[np.ix_(rows, rows)])
+
+
+def _rows(poses: Numbers) -> Numbers:
+    """Return the three rows of each pose."""
+    return np.asarray((3 * poses[:, None] + np.arange(3)).ravel())
