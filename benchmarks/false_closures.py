@@ -4,16 +4,20 @@
 
 from argparse import ArgumentParser
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.campaign import Provenance, call
 from benchmarks.false_injection import FalseClosures, FalseKind
-from benchmarks.flights import flown
+from benchmarks.flights import Flight, FlightCache
 from benchmarks.missions import Mission
+from benchmarks.result_cache import fingerprint, simulation_sources, sources
 from benchmarks.robustness_page import Trial, robustness_page
+from msss_graphslam import __version__
+from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.graph.guarded_back_end import CONTRADICTS, GuardedBackEnd
@@ -22,12 +26,13 @@ from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
 from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Array, Beam, ConstraintKind, Measurement, Scan
+from msss_graphslam.evaluation.errors import interpolate
 from msss_graphslam.simulation.echo_model import EchoKind
 
 __all__ = ["Flown", "main", "trial"]
 
 RECIPE = ESTIMATORS["full"]
-MISSIONS = (("pond", 1), ("paper", 1), ("cave", 1))
+MISSIONS = (("pond", 1), ("paper", 1), ("cave", 1), ("marina", 1))
 SHARES = (0.1, 0.3)
 PLAIN = Configuration().with_values({"back_end.robust_width": 0.0, "back_end.contradiction": 0.0})
 
@@ -42,28 +47,44 @@ class Flown:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Fly the missions without and with false closures, and write the page."""
+    """Run the missions without and with false closures, and write the page."""
     parser = ArgumentParser(prog="python -m benchmarks.false_closures", description=__doc__)
+    parser.add_argument(
+        "--flights",
+        type=Path,
+        default=Path("reproduction", "flights"),
+        help="folder of simulated missions; those of another simulator are made anew",
+    )
     parser.add_argument("--page", type=Path, default=Path("docs", "robustness.md"))
     options = parser.parse_args(arguments)
+    flights = FlightCache(options.flights, fingerprint(simulation_sources()))
+    provenance = Provenance(parser.prog, __version__, fingerprint(sources())[:12])
+    trials = _trials(flights)
+    options.page.write_text(robustness_page(trials, provenance), encoding="utf-8")
+
+
+def _trials(flights: FlightCache) -> list[Trial]:
     trials: list[Trial] = []
-    for world, seed in MISSIONS:
-        mission = flown_mission(Mission(world, EchoKind.REAL, seed))
-        trials += trials_of(mission)
-        options.page.write_text(robustness_page(trials), encoding="utf-8")
+    planned = len(MISSIONS) * 2 * (1 + len(FalseKind) * len(SHARES))
+    with Console().progress() as progress:
+        for world, seed in MISSIONS:
+            mission = Mission(world, EchoKind.REAL, seed)
+            progress(len(trials) / planned, f"{mission}, scans")
+            for made in trials_of(mission_of(str(mission), flights.get(mission))):
+                trials.append(made)
+                progress(len(trials) / planned, f"{mission}, {len(trials)} of {planned} runs")
+    return trials
 
 
-def trials_of(mission: Flown) -> list[Trial]:
-    """Return the mission's trials: guarded and as plain least squares."""
-    trials = []
+def trials_of(mission: Flown) -> Iterator[Trial]:
+    """Yield the mission's trials: guarded and as plain least squares."""
     for plain in (False, True):
         without = trial(mission, None, 0.0, 0, plain=plain)
-        trials.append(without)
+        yield without
         for kind in FalseKind:
             for share in SHARES:
                 count = round(without.found * share / (1.0 - share))
-                trials.append(trial(mission, kind, share, count, plain=plain))
-    return trials
+                yield trial(mission, kind, share, count, plain=plain)
 
 
 def trial(
@@ -107,16 +128,11 @@ def trial(
     )
 
 
-def flown_mission(mission: Mission) -> Flown:
-    """Simulate a mission, and make its scans."""
-    flight = flown(mission)
+def mission_of(name: str, flight: Flight) -> Flown:
+    """Make the scans of a mission, with their true poses."""
     scans = [scan for scan in _scans(flight.measurements()) if scan.usable]
-    stamps = [scan.stamp_ns for scan in scans]
-    truth = flight.truth
-    poses = np.column_stack(
-        [np.interp(stamps, truth.stamps_ns, column) for column in _unwrapped(truth.planar).T]
-    )
-    return Flown(str(mission), scans, poses)
+    stamps = np.array([scan.stamp_ns for scan in scans])
+    return Flown(name, scans, interpolate(flight.truth, stamps)[0])
 
 
 def _scans(measurements: Iterable[Measurement]) -> list[Scan]:
@@ -133,10 +149,6 @@ def _scans(measurements: Iterable[Measurement]) -> list[Scan]:
     return scans + generator.finish()
 
 
-def _unwrapped(poses: Array) -> Array:
-    return np.column_stack([poses[:, :2], np.unwrap(poses[:, 2])])
-
-
 def _error(poses: Array, truth: Array) -> float:
     """Return the mean distance [m] of the keyframes from the truth, both begun alike."""
     away = poses[:, :2] - poses[0, :2] - truth[:, :2] + truth[0, :2]
@@ -144,4 +156,4 @@ def _error(poses: Array, truth: Array) -> float:
 
 
 if __name__ == "__main__":
-    main()
+    call(main)

@@ -15,11 +15,9 @@ __all__ = ["FalseClosures", "FalseKind"]
 COVARIANCE = np.diag([0.05, 0.05, 0.01]) ** 2
 """Of every false closure [m^2, rad^2]: about what true matches state."""
 
-NEAREST, FARTHEST = 2.0, 5.0
-"""How far a false closure is off [m]."""
-
-TURN = 0.1
-"""Its deviation in heading [rad]."""
+FAR = (2.0, 5.0, 0.1)
+NEAR = (0.3, 1.0, 0.02)
+"""How far a false closure is off: least and most [m], and its deviation in heading [rad]."""
 
 LONGEST, SHORTEST = 16, 8
 """Scans of a stretch that is taken for another one."""
@@ -33,12 +31,13 @@ class FalseKind(StrEnum):
 
     ``anywhere``: two random scans, any displacement. ``shifted``: two random scans, metres off.
     ``alike``: a stretch of scans is taken for another one, all with one and the same error, as in
-    a basin of which two parts look alike.
+    a basin of which two parts look alike. ``near``: the same, but less than a metre off.
     """
 
     ANYWHERE = "anywhere"
     SHIFTED = "shifted"
     ALIKE = "alike"
+    NEAR = "near"
 
 
 @dataclass
@@ -64,12 +63,14 @@ class FalseClosures:
         self._extent = 0.5 * float(np.ptp(truth[:, :2], axis=0).max())
         places = self._random.integers(2, len(truth), count)
         self._due = np.bincount(places, minlength=len(truth))
-        self._stretches = self._planned(count) if kind is FalseKind.ALIKE else []
+        self._in_stretches = kind in {FalseKind.ALIKE, FalseKind.NEAR}
+        self._off = NEAR if kind is FalseKind.NEAR else FAR
+        self._stretches = self._planned(count) if self._in_stretches else []
         self.made: set[tuple[int, int]] = set()
 
     def at(self, keyframe: int) -> list[Constraint]:
         """Return those that end at a keyframe, no two to the same other one."""
-        if self._kind is FalseKind.ALIKE:
+        if self._in_stretches:
             found = [edge for one in self._stretches for edge in self._alike(one, keyframe)]
         else:
             found = [self._single(keyframe) for _ in range(int(self._due[keyframe]))]
@@ -112,8 +113,9 @@ class FalseClosures:
 
     def _error(self) -> Array:
         bearing = self._random.uniform(-np.pi, np.pi)
-        distance = self._random.uniform(NEAREST, FARTHEST)
-        turn = self._random.normal(0.0, TURN)
+        least, most, turning = self._off
+        distance = self._random.uniform(least, most)
+        turn = self._random.normal(0.0, turning)
         return np.array([distance * np.cos(bearing), distance * np.sin(bearing), turn])
 
     def _closure(self, first: int, second: int, relative: Array) -> Constraint:

@@ -11,12 +11,13 @@ import numpy as np
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.graph.refinement import Refined
+from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.scans.motion_feedback import MotionFeedback
 from msss_graphslam.core.smoothing.joint_smoothing import Smoothed
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan, TwistError
 
-__all__ = ["NoFeedback", "refine", "smooth", "without_odometry"]
+__all__ = ["NoFeedback", "match_once", "preview", "refine", "smooth", "without_odometry"]
 
 _WEAKNESS = 1e6
 _add_scan = FrontEnd.add_scan
@@ -28,6 +29,18 @@ class NoFeedback(MotionFeedback):
     def update(self, offset: Array, covariance: Array) -> None:
         """Leave everything as it is."""
         del offset, covariance
+
+
+def match_once(
+    matcher: ScanMatcher, reference: Any, current: Any, initial: Array, covariance: Array
+) -> MatchResult:
+    """Match from the guess alone."""
+    return matcher.match(reference, current, initial, covariance)
+
+
+def preview(part: Scan, *others: Any) -> None:
+    """See nothing in a part of a turn."""
+    del part, others
 
 
 def refine(

@@ -71,6 +71,16 @@ PARTS = (
         replacements=((f"{_CORE}.graph.match_rounds.ROUNDS", 1),),
     ),
     Part(
+        "correction within a turn",
+        "the pose waits for the whole turn",
+        replacements=((f"{_CORE}.graph.front_end.previewed", neutral.preview),),
+    ),
+    Part(
+        "wide search",
+        "closures from their guess alone",
+        replacements=((f"{_CORE}.graph.graph_construction.match_widely", neutral.match_once),),
+    ),
+    Part(
         "odometry edges",
         "no odometry beside an accepted match",
         replacements=((f"{_CORE}.graph.front_end.FrontEnd.add_scan", neutral.without_odometry),),

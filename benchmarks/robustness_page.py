@@ -8,7 +8,9 @@ from operator import attrgetter
 
 import numpy as np
 
+from benchmarks.campaign import Provenance
 from benchmarks.false_injection import FalseKind
+from benchmarks.page import rendered
 from benchmarks.tables import Table
 
 __all__ = ["Trial", "growth_table", "robustness_page"]
@@ -18,32 +20,7 @@ BARS = {0.1: 1.2, 0.3: 2.0}
 
 Figure = Callable[["Trial"], float]
 
-_INTRODUCTION = """# False loop closures
-
-This page is made by `python -m benchmarks.false_closures`. To the loop closures that `full` finds,
-false ones are added behind all gates, as they would come, with covariances as small as those of
-true ones (5 cm, 0.01 rad). A *share* is that of the false ones among all in the graph.
-
-- *anywhere*: two random keyframes, a random displacement.
-- *shifted*: two random keyframes, 2 to 5 m and some degrees off.
-- *alike*: a stretch of 8 to 16 scans is taken for another one, up to four closures a scan, all
-  with one and the same error of 2 to 5 m: they confirm each other.
-
-What stands against them, in the order in which it acts:
-
-1. A closure that the way between its keyframes excludes does not enter the graph
-   (`contradicts_odometry`): the consecutive edges alone say where it may lie, and no closure
-   can outvote them. The bound is `back_end.contradiction`.
-2. A Cauchy kernel on all closures (`back_end.robust_width`).
-3. A closure that the graph contradicts three updates in a row is taken out (`withdrawn`), and put
-   back when the graph has come to agree with it. The bound is the same.
-4. At the end what does not fit is matched again from the graph's estimate.
-
-*Least squares* has neither 1, 2 nor 3.
-
-Position error of the keyframes, anchored at the start, mean over {missions}, all with echoes of a
-real head. *Online*: each keyframe when it was new; *final*: after refinement.
-"""
+TEMPLATE = "robustness.md.jinja"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,20 +40,16 @@ class Trial:
     final: float
 
 
-def robustness_page(trials: Sequence[Trial]) -> str:
+def robustness_page(trials: Sequence[Trial], provenance: Provenance) -> str:
     """Return the page as Markdown; the trials must hold the runs without false closures."""
-    missions = list(dict.fromkeys(made.mission for made in trials))
-    parts = [_INTRODUCTION.format(missions=", ".join(f"`{name}`" for name in missions))]
-    parts += [f"## {title}\n\n{table.markdown()}\n" for title, table in _tables(trials)]
-    return "\n".join(parts)
-
-
-def _tables(trials: Sequence[Trial]) -> list[tuple[str, Table]]:
-    return [
-        ("How many times the error grows", growth_table(trials)),
-        ("Errors [m]", _error_table(trials)),
-        ("What became of the false closures", _fate_table(trials)),
-    ]
+    return rendered(
+        TEMPLATE,
+        provenance=provenance,
+        missions=list(dict.fromkeys(made.mission for made in trials)),
+        growth=growth_table(trials).markdown(),
+        errors=_error_table(trials).markdown(),
+        fates=_fate_table(trials).markdown(),
+    )
 
 
 def growth_table(trials: Sequence[Trial]) -> Table:

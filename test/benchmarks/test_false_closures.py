@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """False loop closures: how they are made, and the page about them."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from short_missions import MISSION, shorten_missions
 
+from benchmarks.campaign import Provenance
+from benchmarks.false_closures import Flown, mission_of, trial
 from benchmarks.false_injection import COVARIANCE, FalseClosures, FalseKind
+from benchmarks.flights import Flight, flown
 from benchmarks.robustness_page import Trial, growth_table, robustness_page
 from msss_graphslam.core.compounding import between, compose
 from msss_graphslam.core.graph.constraint_defects import defect
@@ -57,10 +62,24 @@ def test_they_are_metres_off(kind: FalseKind) -> None:
     assert np.median([np.hypot(*row[:2]) for row in off]) > 2.0
 
 
-def test_those_of_a_stretch_confirm_each_other() -> None:
+def test_those_that_are_near_are_less_than_a_metre_off() -> None:
+    poses = truth()
+    off = np.array(
+        [
+            between(poses[edge.first], poses[edge.second]) - edge.relative_pose
+            for edge in made(FalseKind.NEAR)
+        ]
+    )
+    distances = np.hypot(*off[:, :2].T)
+    assert 0.25 < np.median(distances) < 1.0
+    assert distances.max() < 1.4  # the turn acts over a stretch
+
+
+@pytest.mark.parametrize("kind", [FalseKind.ALIKE, FalseKind.NEAR])
+def test_those_of_a_stretch_confirm_each_other(kind: FalseKind) -> None:
     """Where they put the second stretch differs by noise alone."""
     poses = truth()
-    edges = made(FalseKind.ALIKE, count=24)
+    edges = made(kind, count=24)
     believed = [compose(poses[edge.first], edge.relative_pose) for edge in edges]
     moves = np.array(
         [
@@ -103,7 +122,7 @@ def test_the_table_sets_growth_beside_what_is_allowed() -> None:
         *["1.00 / 1.00"] * 2,
         *["10.00 / 10.00"] * 2,
     ]
-    assert list(table.rows[-1][:4]) == ["alike, 30%", "2.0", *["1.50 / 1.50"] * 2]
+    assert list(table.rows[-1][:4]) == ["near, 30%", "2.0", *["1.50 / 1.50"] * 2]
     assert {len(row) for row in table.rows} == {len(table.header)}
 
 
@@ -115,8 +134,46 @@ def test_mean_and_worst_are_over_the_missions() -> None:
 
 
 def test_the_page_holds_its_tables_and_its_command() -> None:
-    page = robustness_page(trials())
-    assert growth_table(trials()).markdown() in page
-    for word in ("python -m benchmarks.false_closures", "`basin_1`", "| 90 | 10 | 7 | 3 |"):
+    page = robustness_page(trials(), Provenance("python -m some.command", "1.2.3", "0123abcd"))
+    assert f"\n{growth_table(trials()).markdown()}\n\n## Errors" in page
+    for word in (
+        "`python -m some.command`",
+        "1.2.3",
+        "0123abcd",
+        "`basin_1`",
+        "| 90 | 10 | 7 | 3 |",
+    ):
         assert word in page
     assert "{" not in page
+
+
+@pytest.fixture(scope="module")
+def flight() -> Iterator[Flight]:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        shorten_missions(monkeypatch, metres=5.0)
+        yield flown(MISSION)
+
+
+@pytest.fixture(scope="module")
+def brief(flight: Flight) -> Flown:
+    return mission_of("brief", flight)
+
+
+def test_the_scans_of_a_mission_stand_at_their_true_poses(flight: Flight, brief: Flown) -> None:
+    assert len(brief.scans) > 4
+    assert brief.truth.shape == (len(brief.scans), 3)
+    for scan, pose in zip(brief.scans, brief.truth, strict=True):
+        nearest = np.abs(flight.truth.stamps_ns - scan.stamp_ns).argmin()
+        np.testing.assert_allclose(pose[:2], flight.truth.planar[nearest, :2], atol=0.02)
+
+
+def test_false_closures_are_put_in_and_counted(brief: Flown) -> None:
+    without = trial(brief, None, 0.0, 0, plain=False)
+    assert (without.mission, without.kind, without.false, without.excluded) == ("brief", "", 0, 0)
+    guarded, plain = (
+        trial(brief, FalseKind.ANYWHERE, 0.3, 4, plain=plain) for plain in (False, True)
+    )
+    assert 0 < guarded.false == plain.false <= 4
+    assert guarded.excluded == guarded.false
+    assert plain.excluded == 0
+    assert guarded.online < 2.0 * without.online < plain.online

@@ -30,6 +30,7 @@ DOCUMENTS = [
     "docs/recordings.md",
     "docs/reproduction.md",
     "docs/robustness.md",
+    "docs/sidelobe_ring.md",
 ]
 
 
