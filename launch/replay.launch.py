@@ -2,8 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording in place of the sensors; ends when the nodes have worked off all of it."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, Shutdown
+import json
+import subprocess
+from tempfile import NamedTemporaryFile
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    OpaqueFunction,
+    Shutdown,
+)
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
@@ -18,20 +27,52 @@ SLAM = ("namespace", "params_file", "estimator", "sonar", "output", "record")
 def generate_launch_description() -> LaunchDescription:
     """Return the live system on simulated time, and the replay that feeds it."""
     share = FindPackageShare(PACKAGE)
-    slam = PathJoinSubstitution([share, "launch", "slam.launch.py"])
-    handed_on = {name: LaunchConfiguration(name) for name in SLAM}
-    replayed = {"use_sim_time": "true", "recording": LaunchConfiguration("bag")}
     return LaunchDescription(
         [
             *replay_arguments(),
             *slam_arguments(share),
-            IncludeLaunchDescription(
-                PythonLaunchDescriptionSource(slam),
-                launch_arguments={**handed_on, **replayed}.items(),
-            ),
+            OpaqueFunction(function=system),
             replay(),
         ]
     )
+
+
+def system(context: LaunchContext) -> list[IncludeLaunchDescription]:
+    """Return the live system, with what only the bag knows where nobody gives it."""
+    bag, given, sonar = (
+        LaunchConfiguration(name).perform(context) for name in ("bag", "params_file", "sonar")
+    )
+    asked = about(bag, given)
+    slam = PathJoinSubstitution([FindPackageShare(PACKAGE), "launch", "slam.launch.py"])
+    handed_on = {name: LaunchConfiguration(name) for name in SLAM}
+    replayed = {
+        "use_sim_time": "true",
+        "recording": bag,
+        "sonar": asked["sonar"] if sonar == "auto" else sonar,
+        "more_params_file": file_of(asked["parameters"]) or given,
+    }
+    source = PythonLaunchDescriptionSource(slam)
+    launch_arguments = {**handed_on, **replayed}.items()
+    return [IncludeLaunchDescription(source, launch_arguments=launch_arguments)]
+
+
+def about(bag: str, parameters: str) -> dict[str, str]:
+    """Return what the bag adds to a file of parameters, and where its beams come from.
+
+    The Python of the nodes is asked: that of ``ros2 launch`` need not have what reads bags.
+    """
+    command = ["python3", "-m", "msss_graphslam.live.replayed", bag, parameters]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)  # noqa: S603
+    return json.loads(done.stdout) if done.stdout else {"sonar": "none", "parameters": ""}
+
+
+def file_of(parameters: str) -> str:
+    """Return a file that lasts as long as the nodes may read it; without parameters none."""
+    if not parameters:
+        return ""
+    with NamedTemporaryFile("w", prefix="msss_replay_", suffix=".yaml", delete=False) as file:
+        file.write(parameters)
+    return file.name
 
 
 def replay_arguments() -> list[DeclareLaunchArgument]:
@@ -58,10 +99,10 @@ def slam_arguments(share: FindPackageShare) -> list[DeclareLaunchArgument]:
         ),
         DeclareLaunchArgument(
             "sonar",
-            default_value="none",
+            default_value="auto",
             description="none: the bag has sonar/ping; raw: it has sonar/raw only, which"
-            " micron_driver decodes",
-            choices=["none", "raw"],
+            " micron_driver decodes; auto: what the bag has",
+            choices=["auto", "none", "raw"],
         ),
         argument("output", "", "folder for the files of the result; empty: no files"),
         argument("record", "", "bag for inputs and outputs; empty: nothing is recorded"),

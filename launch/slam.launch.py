@@ -16,6 +16,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 PACKAGE = "msss_graphslam"
+FILES = ("params_file", "more_params_file")
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -42,6 +43,11 @@ def arguments() -> list[DeclareLaunchArgument]:
     return [
         argument("namespace", "", "namespace of nodes and topics, one for each vehicle"),
         argument("params_file", defaults, "ROS parameter file with the configuration"),
+        argument(
+            "more_params_file",
+            LaunchConfiguration("params_file"),
+            "a second one, whose values go before those of the first",
+        ),
         DeclareLaunchArgument(
             "estimator",
             default_value="full",
@@ -74,7 +80,7 @@ def node(name: str, parameters: dict[str, object], **options: object) -> Node:
         package=PACKAGE,
         executable=name,
         namespace=LaunchConfiguration("namespace"),
-        parameters=[LaunchConfiguration("params_file"), {**timing, **parameters}],
+        parameters=[*map(LaunchConfiguration, FILES), {**timing, **parameters}],
         output="screen",
         **options,
     )

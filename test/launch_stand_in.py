@@ -6,7 +6,9 @@ Both exist only where ROS is installed. The classes take the arguments that the 
 no others; :func:`run` goes through a launch file as ``ros2 launch`` does, but starts nothing.
 """
 
+import os
 import runpy
+import sys
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
@@ -57,6 +59,14 @@ class Shutdown:
 @dataclass
 class LaunchConfiguration:
     name: str
+
+    def perform(self, context: "Launched") -> str:
+        return context.values[self.name]
+
+
+@dataclass
+class OpaqueFunction:
+    function: Callable[["Launched"], Iterable[Any]] = field(kw_only=True)
 
 
 @dataclass
@@ -125,6 +135,7 @@ class Launched:
         steps: dict[type, Callable[[Any], None]] = {
             DeclareLaunchArgument: self._declare,
             IncludeLaunchDescription: self._include,
+            OpaqueFunction: self._perform,
             Node: self._start,
         }
         steps[type(entity)](entity)
@@ -137,6 +148,10 @@ class Launched:
             self.values[argument.name] = self.text(argument.default_value)
         if argument.choices and self.values[argument.name] not in argument.choices:
             raise ArgumentError(f"{argument.name} is none of {argument.choices}")
+
+    def _perform(self, action: OpaqueFunction) -> None:
+        for entity in action.function(self):
+            self.visit(entity)
 
     def _include(self, include: IncludeLaunchDescription) -> None:
         for name, value in include.launch_arguments:
@@ -190,7 +205,12 @@ class Launched:
 
 MODULES: dict[str, list[type]] = {
     "launch": [LaunchDescription],
-    "launch.actions": [DeclareLaunchArgument, IncludeLaunchDescription, Shutdown],
+    "launch.actions": [
+        DeclareLaunchArgument,
+        IncludeLaunchDescription,
+        OpaqueFunction,
+        Shutdown,
+    ],
     "launch.conditions": [IfCondition],
     "launch.launch_description_sources": [PythonLaunchDescriptionSource],
     "launch.substitutions": [
@@ -212,6 +232,7 @@ def description(path: Path) -> LaunchDescription:
     for name, classes in MODULES.items():
         modules[name] = ModuleType(name)
         vars(modules[name]).update({kind.__name__: kind for kind in classes})
+    modules["launch"].LaunchContext = Launched  # type: ignore[attr-defined]
     with ExitStack() as stack:
         stack.enter_context(patch.dict("sys.modules", modules))
         found = runpy.run_path(str(path))["generate_launch_description"]()
@@ -222,6 +243,8 @@ def description(path: Path) -> LaunchDescription:
 def run(name: str, **given: str) -> Launched:
     """Return what ``ros2 launch msss_graphslam NAME given...`` would start."""
     launched = Launched(values=dict(given))
-    for entity in description(SHARE / "launch" / name).entities:
-        launched.visit(entity)
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    with patch.dict("os.environ", PATH=path):
+        for entity in description(SHARE / "launch" / name).entities:
+            launched.visit(entity)
     return launched

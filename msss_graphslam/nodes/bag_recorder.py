@@ -6,29 +6,30 @@ import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
 import rclpy
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages import topics
 from msss_graphslam.messages.topics import Topic
+from msss_graphslam.nodes.fitting_subscription import FittingSubscription
+from msss_graphslam.nodes.recorded_time import RecordedTime
 from msss_graphslam.recordings.files import require_absent
 from msss_graphslam.recordings.unfinished import set_aside
 from msss_graphslam.recordings.writer import BagWriter
-from msss_graphslam.ros.diagnostics import TOPIC, Diagnostics
+from msss_graphslam.ros.diagnostics import Diagnostics
 from msss_graphslam.ros.messages import available, make, message_class
-from msss_graphslam.ros.qos import DEEP, profile_of
+from msss_graphslam.ros.qos import DEEP, name_of
 from msss_graphslam.ros.running import leave
 
 __all__ = ["BagRecorder", "main"]
@@ -41,7 +42,8 @@ _DIAGNOSTICS = Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 class BagRecorder(Node):
     """Writes every message of the package's topics into a bag.
 
-    Log time is this node's time of arrival, publish time that of the publisher.
+    Log time is this node's time of arrival, in a replay its clock's at publishing; publish time
+    that of the publisher.
     """
 
     def __init__(self) -> None:
@@ -50,16 +52,26 @@ class BagRecorder(Node):
         self.counts: Counter[str] = Counter()
         self._bytes = 0
         self._since = time.monotonic(), 0
-        self._misfits: set[str] = set()
+        is_replayed = bool(self.get_parameter("use_sim_time").value)
+        self.time = RecordedTime(lambda: self.get_clock().now().nanoseconds, is_replayed)
+        if is_replayed:
+            self._follow_clock()
         self.diagnostics = Diagnostics(self)
         self.diagnostics.values["bytes_per_s"] = self._byte_rate
 
     def record_into(self, writer: BagWriter) -> None:
         """Begin to record."""
-        for topic in topics.INPUTS + topics.OUTPUTS:
-            self._record(writer, topic, topic.name)
-        self._record(writer, _DIAGNOSTICS, TOPIC)
+        for topic in (*topics.INPUTS, *topics.OUTPUTS, _DIAGNOSTICS):
+            self._record(writer, topic)
         self.create_timer(_FLUSH_PERIOD, writer.flush, clock=_steady())
+
+    def _follow_clock(self) -> None:
+        def tick(message: Any, info: Any) -> None:
+            clock_ns = message.clock.sec * 1_000_000_000 + message.clock.nanosec
+            self.time.tick(info["source_timestamp"], clock_ns)
+
+        kind = message_class("rosgraph_msgs/msg/Clock")
+        self.create_subscription(kind, "/clock", cast(Any, tick), DEEP)
 
     def _read_output(self) -> Path:
         descriptor = make(
@@ -72,7 +84,8 @@ class BagRecorder(Node):
             raise UserError("parameter output is missing: give the bag to be written")
         return Path(output)
 
-    def _record(self, writer: BagWriter, topic: Topic, name: str) -> None:
+    def _record(self, writer: BagWriter, topic: Topic) -> None:
+        name = name_of(topic)
         if not available(topic.type_name):
             self.get_logger().info(f"{name} is not recorded: no {topic.type_name} installed")
             return
@@ -80,33 +93,15 @@ class BagRecorder(Node):
 
         # rclpy hands the delivery's description to a callback that takes two arguments.
         def take(data: Any, info: Any) -> None:
-            log_ns = self.get_clock().now().nanoseconds
+            write = partial(writer.write_raw, full, topic.type_name, data)
             # A middleware that does not tell says 0.
-            publish_ns = info["source_timestamp"] or log_ns
-            writer.write_raw(full, topic.type_name, data, log_ns, publish_ns)
+            self.time.date(info["source_timestamp"], write)
             self.counts[full] += 1
             self._bytes += len(data)
 
         self.diagnostics.values[f"recorded/{full}"] = lambda: self.counts[full]
-        self._subscribe(topic, name, cast(Any, take))
-
-    def _subscribe(self, topic: Topic, name: str, take: Callable[[Any], None]) -> None:
-        """Subscribe without loss, or as it goes where a publisher offers less than that."""
-        kind = message_class(topic.type_name)
-        events = SubscriptionEventCallbacks(incompatible_qos=lambda _: self._misfits.add(name))
-        strict = self.create_subscription(
-            kind, name, take, profile_of(topic, DEEP), event_callbacks=events, raw=True
-        )
-
-        def give_in() -> None:
-            if name not in self._misfits:
-                return
-            timer.cancel()
-            self.destroy_subscription(strict)
-            self.create_subscription(kind, name, take, _modest(), raw=True)
-            self.get_logger().warning(f"{name} is offered without a guarantee: some may be lost")
-
-        timer = self.create_timer(_FLUSH_PERIOD, give_in, clock=_steady())
+        warn = self.get_logger().warning
+        FittingSubscription(self, topic, name, cast(Any, take), warn)
 
     def _byte_rate(self) -> float:
         """Return the bytes a second since the last call."""
@@ -117,11 +112,6 @@ class BagRecorder(Node):
 
 def _steady() -> Clock:
     return Clock(clock_type=ClockType.STEADY_TIME)
-
-
-def _modest() -> QoSProfile:
-    """Return what every publisher can serve."""
-    return QoSProfile(depth=DEEP, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class _Stop:
@@ -148,6 +138,7 @@ def _record(stop: _Stop) -> Iterator[str]:
             node.record_into(writer)
             yield f"recording into {node.output}"
             _spin(node, stop)
+            node.time.finish()
         yield f"{node.counts.total()} messages recorded into {node.output}"
     finally:
         node.destroy_node()

@@ -15,8 +15,10 @@ from sample_bags import sensor_messages
 from msss_graphslam.messages import topics
 from msss_graphslam.recordings.reader import open_recording
 from msss_graphslam.recordings.typestore import TYPES
-from msss_graphslam.ros.messages import message_class
+from msss_graphslam.ros.messages import make, message_class
 from msss_graphslam.ros.qos import profile_of
+
+CLOCK = "rosgraph_msgs/msg/Clock"
 
 pytestmark = pytest.mark.slow
 
@@ -82,6 +84,29 @@ def test_what_is_published_is_in_the_bag(
     assert read == {f"{prefix}{topic}": messages for topic, messages in sent.items()}
 
 
+def test_in_a_replay_the_log_has_the_times_of_its_clock(tmp_path: Path, at: Domain) -> None:
+    bag = tmp_path / "dive.mcap"
+    seconds = 1_000_000_000
+    with (
+        TestNode(at) as source,
+        at.start("bag_recorder", output=bag, use_sim_time=True) as process,
+    ):
+        counts = watch(source)
+        clock = source.node.create_publisher(message_class(CLOCK), "/clock", 10)
+        publish(source, 3)
+        wait_until(lambda: counts and counts[-1]["recorded//ground_truth"] == 3, "the first")
+        wait_until(clock.get_subscription_count, "the recorder")
+        for second in (100, 101):
+            clock.publish(make(CLOCK, clock=make("builtin_interfaces/msg/Time", sec=second)))
+        publish(source, 3)
+        wait_until(lambda: counts[-1]["recorded//ground_truth"] == 6, "the others")
+        assert process.interrupt() == 0
+    times = [r.log_ns for r in open_recording(bag).messages() if r.channel.topic == "/imu/data"]
+    assert times[: len(times) // 2] == [100 * seconds] * (len(times) // 2)
+    assert all(101 * seconds <= time < 102 * seconds for time in times[len(times) // 2 :])
+    assert times
+
+
 def test_what_a_kill_leaves_is_kept_aside(tmp_path: Path, at: Domain) -> None:
     bag = tmp_path / "dive"
     with TestNode(at) as source, at.start("bag_recorder", output=bag) as process:
@@ -127,15 +152,22 @@ def test_a_termination_finishes_the_bag(tmp_path: Path, at: Domain) -> None:
     assert [entry.name for entry in tmp_path.iterdir()] == ["dive.mcap"]
 
 
-def test_a_publisher_without_a_guarantee_is_heard_too(tmp_path: Path, at: Domain) -> None:
-    """As some drivers are; before the recorder has looked its messages are not there."""
+@pytest.mark.parametrize("is_first", [True, False])
+def test_a_publisher_without_a_guarantee_is_heard_too(
+    tmp_path: Path, at: Domain, *, is_first: bool
+) -> None:
+    """As some drivers are, whether or not one with a guarantee is there as well."""
     bag = tmp_path / "dive"
+    reliable = profile_of(topics.SONAR_PING)
     _, message, _ = next(one for one in sensor_messages(1) if one[0] == "/sonar/ping")
     data = bytes(TYPES.serialize_cdr(message, message.__msgtype__))
     modest = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
     kind = message_class(topics.SONAR_PING.type_name)
     with TestNode(at) as source, at.start("bag_recorder", output=bag) as process:
         publisher = source.node.create_publisher(kind, topics.SONAR_PING.name, modest)
+        if not is_first:
+            other = source.node.create_publisher(kind, topics.SONAR_PING.name, reliable)
+            wait_until(other.get_subscription_count, "the recorder")
         process.wait_for_output("sonar/ping is offered without a guarantee")
         wait_until(publisher.get_subscription_count, "the recorder")
         counts = watch(source)
@@ -146,4 +178,5 @@ def test_a_publisher_without_a_guarantee_is_heard_too(tmp_path: Path, at: Domain
 
         wait_until(recorded, "a recorded beam")
         assert process.interrupt() == 0
+        assert process.output.count("without a guarantee") == 1
     assert open_recording(bag).topics["/sonar/ping"].count > 0

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from head_bytes import packets, raw_messages
 from nodes.processes import LIMIT, Domain, NodeProcess, TestNode, domain, wait_until
 from sample_bags import BEAM_PERIOD_NS, START_NS, sensor_messages, write_bag
 
@@ -125,6 +126,13 @@ def test_nothing_is_sent_before_everybody_listens(tmp_path: Path, at: Domain) ->
             late.node.create_subscription(kind, "sonar/ping", pings.append, STREAM, raw=True)
             assert process.wait() == 0
             wait_until(lambda: len(pings) == 50 and listener.count == 250, "all messages")
+
+
+def test_bytes_alone_are_said_to_want_the_driver(tmp_path: Path, at: Domain) -> None:
+    bag = write_bag(tmp_path / "dive", raw_messages(packets(3)))
+    waited = {"wait_for": "[dead_reckoning, scan_generation]"}
+    with replay(at, bag, **waited) as process:
+        process.wait_for_output(r"waiting for micron_driver \(sonar/raw\).*sonar:=raw")
 
 
 def test_a_pause_holds_everything_back(tmp_path: Path, at: Domain) -> None:

@@ -57,7 +57,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory, environment: dict[str, s
     for name in PACKAGED:
         (source / name).parent.mkdir(parents=True, exist_ok=True)
         (source / name).symlink_to(ROOT / name)
-    finish([COLCON, "build"], workspace, environment)
+    finish([COLCON, "build", "--packages-select", "msss_graphslam"], workspace, environment)
     return workspace
 
 

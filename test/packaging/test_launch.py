@@ -8,11 +8,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import yaml
 from launch_stand_in import ArgumentError, Launched, Started, run
+from sample_bags import START_NS, beam_message, write_bag
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.files import read_parameters
 from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.recordings.mounting import Mounting
 
 ROOT = Path(__file__).parents[2]
 SLAM = "slam.launch.py"
@@ -140,6 +143,57 @@ def test_a_replay_runs_on_its_own_clock_and_ends_everything() -> None:
     assert started(launched, "back_end").parameters["output"] == "out"
     assert started(launched, "back_end").parameters["recording"] == "pond"
     assert {node.namespace for node in launched.nodes} == {"auv"}
+
+
+@pytest.mark.parametrize("given", [{}, {"mount_x": 0.4}, {"mount_y": 0.0}])
+def test_a_replay_takes_the_mounting_that_nobody_gives_from_the_bag(
+    tmp_path: Path, given: dict[str, float]
+) -> None:
+    static = Mounting(0.2, -0.1, 0.5).transforms(START_NS)
+    ping = ("/sonar/ping", beam_message(0), START_NS)
+    bag = write_bag(tmp_path / "dive", [("/tf_static", static, START_NS), ping])
+    own = tmp_path / "vehicle.yaml"
+    own.write_text(
+        yaml.safe_dump({"/**": {"ros__parameters": {"port": "/dev/a", "sonar": given}}})
+    )
+    launched = run(REPLAY, bag=str(bag), params_file=str(own))
+    for name in SLAM_NODES:
+        first, second = started(launched, name).files
+        assert first == own
+        found = {**read_parameters(first), **read_parameters(second)}
+        expected = {"sonar.mount_x": 0.2, "sonar.mount_y": -0.1, "sonar.mount_yaw": 0.5}
+        if given.get("mount_x"):
+            expected["sonar.mount_x"] = 0.4
+        assert found == {"port": "/dev/a", **expected}
+    second.unlink()
+
+
+@pytest.mark.parametrize("bag", [str(ROOT / "bags" / "pond"), "nothing"])
+def test_a_replay_whose_bag_tells_no_mounting_has_the_given_file_alone(bag: str) -> None:
+    first, second = started(run(REPLAY, bag=bag), "scan_generation").files
+    assert first == second
+
+
+@pytest.mark.parametrize(("sonar", "decoded"), [("auto", True), ("raw", True), ("none", False)])
+def test_a_bag_of_bytes_alone_gets_the_driver_unasked(sonar: str, decoded: bool) -> None:
+    launched = run(REPLAY, bag=str(ROOT / "bags" / "pond"), sonar=sonar)
+    assert ("micron_driver" in names(launched)) is decoded
+    assert names(launched) == names(run(REPLAY, bag=str(ROOT / "bags" / "pond"))) or not decoded
+
+
+def test_a_bag_with_beams_has_no_driver(tmp_path: Path) -> None:
+    assert "micron_driver" not in names(run(REPLAY, bag=str(write_bag(tmp_path / "dive"))))
+
+
+@pytest.mark.parametrize("name", [SLAM, REPLAY])
+def test_the_python_of_ros2_launch_need_not_have_the_package(name: str) -> None:
+    tree = ast.parse((ROOT / "launch" / name).read_text(encoding="utf-8"))
+    imported = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    assert {str(module).partition(".")[0] for module in imported} <= {
+        "launch",
+        "launch_ros",
+        "tempfile",
+    }
 
 
 def test_a_replay_without_a_bag_is_refused() -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from rclpy.node import Node
 
 from msss_graphslam.messages import topics
+from msss_graphslam.nodes.names import DRIVER
 from msss_graphslam.nodes.replay.audience import Audience
 from msss_graphslam.nodes.replay.follower import Follower, GraphFollower
 from msss_graphslam.nodes.replay.output import Output
@@ -27,6 +28,10 @@ _SCANNING_LIMIT_NS = 5_000_000_000
 _DRIVING_LIMIT_NS = 1_000_000_000
 _STALL = 5.0
 _TELL_EVERY = 5.0
+_DRIVER_WANTED = (
+    "; the bag has the head's bytes alone, which want a micron_driver with source:=topic"
+    " (replay.launch.py sonar:=raw)"
+)
 _LOOK_EVERY = 0.5
 _ACKNOWLEDGEMENT = 0.02
 _QUIET = 0.3
@@ -96,7 +101,8 @@ class Flow:
                 return
             if now - told >= _TELL_EVERY:
                 told = now
-                self._log.info(f"waiting for {_listed(missing)}")
+                hint = _DRIVER_WANTED if DRIVER in missing else ""
+                self._log.info(f"waiting for {_listed(missing)}{hint}")
             self._spin(0.02)
         self._members = self._audience.members()
 

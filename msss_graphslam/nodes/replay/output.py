@@ -20,7 +20,7 @@ from msss_graphslam.nodes.replay.selection import relative_name
 from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.reader import RecordedTopic
 from msss_graphslam.ros.messages import message_class
-from msss_graphslam.ros.qos import DEEP, profile_of
+from msss_graphslam.ros.qos import DEEP, name_of, profile_of
 
 __all__ = ["Output"]
 
@@ -38,7 +38,7 @@ class Output:
             name = relative_name(topic.name)
             known = topics.find(topic.name) or Topic(name, topic.type_name)
             kind = message_class(topic.type_name)
-            publisher = node.create_publisher(kind, name, profile_of(known))
+            publisher = node.create_publisher(kind, name_of(known), profile_of(known))
             self.by_name[name] = self._by_bag_name[topic.name] = publisher
 
     def publish(self, raw: RawMessage) -> bool:
