@@ -29,6 +29,7 @@ __all__ = [
     "SCANS_END",
     "SCANS_TAKEN",
     "SCAN_BEAMS",
+    "SCAN_PART",
     "SCAN_PROGRESS",
     "SETTLED_ODOMETRY",
     "SONAR_PING",
@@ -105,6 +106,7 @@ RAW_TAKEN = Topic("sonar/taken", "std_msgs/msg/Header")
 RECENT_BEAMS = Topic("sonar/recent", "sensor_msgs/msg/LaserScan", latched=True)
 SETTLED_ODOMETRY = Topic("odom/settled", "sensor_msgs/msg/PointCloud2", latched=True)
 SCAN_BEAMS = Topic("scan/beams", "sensor_msgs/msg/PointCloud2", latched=True)
+SCAN_PART = Topic("scan/part", "sensor_msgs/msg/PointCloud2")
 SCAN_PROGRESS = Topic("scan/progress", "std_msgs/msg/Header")
 SCANS_END = Topic("scan/end", "std_msgs/msg/Header")
 SCANS_TAKEN = Topic("scan/taken", "std_msgs/msg/Header", latched=True)
@@ -117,6 +119,7 @@ LINKS = (
     RECENT_BEAMS,
     SETTLED_ODOMETRY,
     SCAN_BEAMS,
+    SCAN_PART,
     SCAN_PROGRESS,
     SCANS_END,
     SCANS_TAKEN,

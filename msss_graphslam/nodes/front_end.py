@@ -13,6 +13,7 @@ from msss_graphslam.messages.topics import (
     CORRECTION,
     GRAPH_POSES,
     SCAN_BEAMS,
+    SCAN_PART,
     SCANS_END,
     SCANS_TAKEN,
     TRIED,
@@ -20,7 +21,7 @@ from msss_graphslam.messages.topics import (
 from msss_graphslam.nodes.closure_count import ClosureCount
 from msss_graphslam.nodes.keyframing import Keyframing
 from msss_graphslam.nodes.last_scan import LastScan
-from msss_graphslam.nodes.timing import Stillness
+from msss_graphslam.nodes.quiet import Quiet
 from msss_graphslam.offline.estimators import recipe_named
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode, leave, run
@@ -52,7 +53,7 @@ class FrontEndNode(SlamNode):
         self._constraints = self.offer(CONSTRAINTS, DEEP)
         self._correction = self.offer(CORRECTION)
         self._taken = self.offer(SCANS_TAKEN)
-        self._stillness = Stillness()
+        self._quiet = Quiet.between_nodes()
         self._last_scan = LastScan()
         self._closures = ClosureCount(self.diagnostics.values)
         self._keyframing = self._begin()
@@ -67,6 +68,7 @@ class FrontEndNode(SlamNode):
             pausable=False,
         )
         self.listen(SCAN_BEAMS, link_decoding.scan_beams, self._take_scan, ordered=False)
+        self.listen(SCAN_PART, link_decoding.scan_beams, self._take_part, ordered=False)
         self.every(_LOOK, self._look_after)
 
     def on_reset(self) -> None:
@@ -81,8 +83,8 @@ class FrontEndNode(SlamNode):
         waiting = self._keyframing.waiting
         if waiting:
             return False, f"{waiting} scans waiting"
-        is_still = self._stillness.holds()
-        if not (self._last_scan.take() or is_still):
+        is_quiet = self._quiet.is_reached()
+        if not (self._last_scan.take() or is_quiet):
             return False, "looking whether more is on its way"
         self.diagnostics.publish()
         return True, f"{self._keyframing.keyframes} keyframes"
@@ -109,14 +111,17 @@ class FrontEndNode(SlamNode):
         values["scan_s/max"] = lambda: max(self._keyframing.seconds, default=0.0)
 
     def _take_scan(self, scan: Scan) -> None:
-        self._stillness.stir()
+        self._quiet.note()
         self._last_scan.came(scan.stamp_ns)
         self._keyframing.add_scan(scan)
         # Of a turn that was cut off, the last beam is the end.
         self._tell_taken(max(self._taken_ns, scan.end_stamp_ns + (not scan.complete)))
 
+    def _take_part(self, part: Scan) -> None:
+        self._keyframing.add_part(part)
+
     def _take_answer(self, known: GraphPoses) -> None:
-        self._stillness.stir()
+        self._quiet.note()
         self._keyframing.add_answer(known)
         if len(known.stamps_ns):
             self._tell_taken(max(self._taken_ns, int(known.stamps_ns[-1])))

@@ -13,6 +13,8 @@ from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import GraphPoses, KeyframeReport, MapCorrection, Scan, Stamps
 from msss_graphslam.messages.refusal import Refusal
+from msss_graphslam.nodes.known_keyframes import first_of, same_beginning
+from msss_graphslam.nodes.waiting_part import WaitingPart
 
 __all__ = ["Keyframing"]
 
@@ -44,6 +46,7 @@ class Keyframing:
         self._queue: deque[Scan] = deque()
         self._stamps: set[int] = set()
         self._newest_ns = -(2**62)
+        self._part = WaitingPart()
         self._known: GraphPoses | None = None
         self._behind: GraphPoses | None = None
         self._pending: Scan | None = None
@@ -78,8 +81,14 @@ class Keyframing:
             raise Refusal("scan_beams_out_of_order")
         self._stamps.add(scan.stamp_ns)
         self._newest_ns = scan.stamp_ns
+        self._part.follow(scan)
         self._queue.append(scan)
         self._advance()
+
+    def add_part(self, part: Scan) -> None:
+        """Correct the pose by the turn in progress, once all before it is worked off."""
+        self._part.add(part)
+        self._preview()
 
     def add_answer(self, known: GraphPoses) -> None:
         """Take the back end's answer, if it is one to the newest keyframe."""
@@ -88,7 +97,7 @@ class Keyframing:
             return
         if self._fits(known):
             self._settle(known)
-        elif _same_beginning(self._own_stamps, known.stamps_ns):
+        elif same_beginning(self._own_stamps, known.stamps_ns):
             self._behind = known
         else:
             self._refused["graph_of_another_front_end"] += 1
@@ -113,7 +122,7 @@ class Keyframing:
 
     def _fits(self, known: GraphPoses) -> bool:
         own = self._own_stamps
-        return len(known.stamps_ns) >= len(own) and _same_beginning(own, known.stamps_ns)
+        return len(known.stamps_ns) >= len(own) and same_beginning(own, known.stamps_ns)
 
     def _advance(self) -> None:
         while self._queue and self._pending is None:
@@ -123,6 +132,13 @@ class Keyframing:
             self._try(scan)
             if self._pending is scan and self._known is not None and self._fits(self._known):
                 self._settle(self._known)
+        self._preview()
+
+    def _preview(self) -> None:
+        part = self._part.take() if self._pending is None else None
+        correction = self._front_end.preview(part) if part is not None else None
+        if correction is not None:
+            self._place(correction)
 
     def _begin(self, scan: Scan) -> None:
         """Go on where an earlier front end has ended, if there was one."""
@@ -136,14 +152,7 @@ class Keyframing:
         """Adopt the keyframes before the scan; return how many these are."""
         count = int(np.searchsorted(known.stamps_ns, scan.stamp_ns))
         if count:
-            self._front_end.adopt(
-                GraphPoses(
-                    known.stamps_ns[:count],
-                    known.poses[:count],
-                    known.odometry[:count],
-                    known.covariances[:count],
-                )
-            )
+            self._front_end.adopt(first_of(known, count))
         return count
 
     def _try(self, scan: Scan) -> None:
@@ -188,8 +197,3 @@ class Keyframing:
         del self._front_end.nodes[len(known.stamps_ns) :]
         self._front_end.poses = known.poses
         self._pending, self._is_second_try = None, False
-
-
-def _same_beginning(own: Stamps, known: Stamps) -> bool:
-    both = min(len(own), len(known))
-    return bool(np.array_equal(own[:both], known[:both]))

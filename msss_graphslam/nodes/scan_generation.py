@@ -6,24 +6,21 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from time import monotonic, perf_counter
 
-import numpy as np
-
 from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Scan
-from msss_graphslam.messages import decoding, encoding, frames, link_decoding, topics
+from msss_graphslam.messages import decoding, encoding, link_decoding, topics
 from msss_graphslam.messages.link_decoding import SettledOdometry
 from msss_graphslam.nodes.arrived import Gathering, take_arrived
 from msss_graphslam.nodes.path_output import PathOutput
 from msss_graphslam.nodes.quiet import Quiet
 from msss_graphslam.nodes.resumed_beams import ResumedBeams
+from msss_graphslam.nodes.scan_output import ScanOutput
 from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.node import SlamNode, leave, run
-from msss_graphslam.ros.qos import DEEP
 
 __all__ = ["ScanGenerationNode", "main"]
 
-_SCAN_FRAME = "scan"
 _LOOK = 0.2
 _PROGRESS_NS = 100_000_000
 _LONG_AGO = -(2**62)
@@ -45,12 +42,10 @@ class ScanGenerationNode(SlamNode):
 
     def __init__(self) -> None:
         super().__init__("scan_generation", ("sonar", "segmentation", "scanning", "sensors"))
-        self._scan_beams = self.offer(topics.SCAN_BEAMS, DEEP)
-        self._scan_points = self.offer(topics.SCAN)
+        self._scans = ScanOutput(self)
         self._path = PathOutput(self)
         self._progress = self.offer(topics.SCAN_PROGRESS)
         self._end = self.offer(topics.SCANS_END)
-        self._transforms = self.offer(topics.TRANSFORMS)
         self._made = 0
         self._busy = 0.0
         self._start_anew()
@@ -74,7 +69,8 @@ class ScanGenerationNode(SlamNode):
             return False, "waiting for beams of before the start"
         self._beams.join()
         self._asked = self._asked or (monotonic(), self._beam_ns)
-        if not self._is_covered and self._quiet.lasting < _LONGEST_WAIT:
+        silent = min(self._quiet.lasting, monotonic() - self._reckoned_at)
+        if not self._is_covered and silent < _LONGEST_WAIT:
             return False, "waiting for odometry"
         if not self._quiet.is_reached():
             return False, "input still comes in"
@@ -137,11 +133,13 @@ class ScanGenerationNode(SlamNode):
             lambda: self.count_publishers(topics.SCANS_TAKEN.name) > 0,
         )
         self._quiet = Quiet()
+        self._reckoned_at = monotonic()
         self._asked = None
 
     def _take_beam(self, beam: Beam) -> None:
         self._beam_ns = beam.stamp_ns
         self._publish(self._generator.add_beam(beam))
+        self._publish_part()
         if beam.stamp_ns - self._told_ns >= _PROGRESS_NS:
             self._told_ns = beam.stamp_ns
             self._progress.publish(encoding.moment(make, beam.stamp_ns))
@@ -154,27 +152,20 @@ class ScanGenerationNode(SlamNode):
         for entry in settled.entries:
             self._path.add(entry)
             self._publish(self._generator.add_odometry(entry))
-        self._quiet.note()
+            self._publish_part()
+        self._reckoned_at = monotonic()
+
+    def _publish_part(self) -> None:
+        """Publish the first third of the turn in progress when it is there."""
+        part = self._generator.part()
+        if part is not None:
+            self._scans.publish_part(part)
 
     def _publish(self, scans: list[Scan]) -> None:
         for scan in scans:
             self._made += 1
             self._newest_ns = scan.stamp_ns
-            message = encoding.scan_beams(make, scan)
-            numbers = (scan.reckoned, scan.body_points, scan.body_covariances, scan.points)
-            if self._scan_beams.publish(message, *numbers, scan.covariances) and scan.usable:
-                self._show(scan)
-
-    def _show(self, scan: Scan) -> None:
-        """Publish the points in {I}, and where {I} lies."""
-        frame = self.frame(_SCAN_FRAME)
-        if self._transforms.available:
-            x, y, z, _, _, yaw = scan.reckoned[0].tolist()
-            placement = np.array([x, y, z, 0.0, 0.0, yaw])
-            odom = self.frame(frames.ODOM)
-            transform = encoding.transform(make, scan.stamp_ns, placement, odom, frame)
-            self._transforms.publish(encoding.tf_message(make, [transform]))
-        self._scan_points.publish(encoding.scan_cloud(make, scan, frame))
+            self._scans.publish(scan)
 
     def _timed(self, _name: str) -> AbstractContextManager[object]:
         return self._add_time()

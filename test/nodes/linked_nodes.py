@@ -16,7 +16,7 @@ from msss_graphslam.nodes.keyframing import Keyframing
 from msss_graphslam.nodes.mission import Mission
 from msss_graphslam.recordings.typestore import make
 
-__all__ = ["LinkedNodes", "scans_of"]
+__all__ = ["LinkedNodes", "parts_of", "scans_of"]
 
 
 class LinkedNodes:
@@ -82,15 +82,26 @@ class LinkedNodes:
 
 def scans_of(measurements: Iterable[Measurement]) -> list[Scan]:
     """All scans of the measurements, as the nodes before make them."""
+    return _generated(measurements)[0]
+
+
+def parts_of(measurements: Iterable[Measurement]) -> list[Scan]:
+    """The parts of their turns, as the nodes before make them."""
+    return _generated(measurements)[1]
+
+
+def _generated(measurements: Iterable[Measurement]) -> tuple[list[Scan], list[Scan]]:
     refused: Counter[str] = Counter()
     reckoning = PromptDeadReckoning(Configuration(), refused)
     generator = ScanGenerator(Configuration(), refused)
     scans: list[Scan] = []
+    parts: list[Scan | None] = []
     for measurement in measurements:
         for entry in reckoning.process(measurement).settled:
             scans += generator.add_odometry(entry)
+            parts.append(generator.part())
         if isinstance(measurement, Beam):
             scans += generator.add_beam(measurement)
     for entry in reckoning.finish():
         scans += generator.add_odometry(entry)
-    return scans + generator.finish()
+    return scans + generator.finish(), [part for part in parts if part is not None]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nodes.linked_nodes import LinkedNodes, scans_of
+from nodes.linked_nodes import LinkedNodes, parts_of, scans_of
 from small_mission import recorded
 
 from msss_graphslam.config.configuration import Configuration
@@ -27,14 +27,14 @@ def scans() -> tuple[Scan, ...]:
 class Lonely:
     """A front end whose back end the test plays."""
 
-    def __init__(self) -> None:
+    def __init__(self, estimator: str = "uspic") -> None:
         self.refused: Counter[str] = Counter()
         self.reports: list[KeyframeReport] = []
         self.corrections: list[MapCorrection] = []
         self.now = 0.0
         self.front = Keyframing(
             Configuration(),
-            ESTIMATORS["uspic"],
+            ESTIMATORS[estimator],
             self.refused,
             self.reports.append,
             self.corrections.append,
@@ -202,3 +202,91 @@ def test_a_scan_that_cannot_be_worked_on_does_not_stop_the_next(
             linked.add_scan(scans()[1])
     linked.add_scan(scans()[2])
     assert len(linked.back.poses) == linked.front.keyframes == 2
+
+
+@cache
+def parts() -> dict[int, Scan]:
+    """The parts of the turns, by the stamp that the turn ends at of which they are no part."""
+    return {part.stamp_ns: part for part in parts_of(recorded().measurements)}
+
+
+def part_after(number: int) -> Scan:
+    return parts()[scans()[number].end_stamp_ns]
+
+
+def looking(answered: int) -> Lonely:
+    """A front end with so many keyframes that are answered."""
+    lonely = Lonely("full")
+    for scan in scans()[:answered]:
+        lonely.front.add_scan(scan)
+        lonely.front.add_answer(answer(lonely.reports))
+    return lonely
+
+
+def test_a_part_corrects_the_pose_as_offline_and_not_the_graph() -> None:
+    lonely = looking(2)
+    lonely.front.add_part(part_after(1))
+    assert len(lonely.corrections) == 3
+    front_end = FrontEnd(Configuration(), ESTIMATORS["full"])
+    for number in range(2):
+        front_end.add_scan(scans()[number])
+        known = answer(lonely.reports[: number + 1])
+        front_end.correct(known.poses, known.covariances[-1])
+    expected = front_end.preview(part_after(1))
+    assert expected is not None
+    assert lonely.corrections[-1].stamp_ns == expected.stamp_ns
+    assert lonely.corrections[-1].pose.tobytes() == expected.pose.tobytes()
+    assert lonely.front.keyframes == 2
+    assert lonely.front.waiting == 0
+
+
+def test_a_part_waits_until_the_scan_before_is_answered() -> None:
+    lonely = looking(1)
+    lonely.front.add_scan(scans()[1])
+    lonely.front.add_part(part_after(1))
+    assert len(lonely.corrections) == 1
+    lonely.front.add_answer(answer(lonely.reports))
+    assert len(lonely.corrections) == 3
+    assert lonely.corrections[-1].stamp_ns > lonely.corrections[-2].stamp_ns
+
+
+def test_a_part_that_overtakes_the_scan_before_waits_for_it() -> None:
+    lonely = looking(1)
+    lonely.front.add_part(part_after(1))
+    lonely.front.add_scan(scans()[1])
+    assert len(lonely.corrections) == 1
+    lonely.front.add_answer(answer(lonely.reports))
+    assert len(lonely.corrections) == 3
+
+
+def test_a_part_whose_turn_is_whole_is_dropped() -> None:
+    lonely = looking(2)
+    lonely.front.add_scan(scans()[2])
+    lonely.front.add_part(part_after(1))
+    lonely.front.add_answer(answer(lonely.reports))
+    assert len(lonely.corrections) == 3
+    lonely.front.add_part(part_after(0))
+    assert len(lonely.corrections) == 3
+    assert not lonely.refused
+
+
+def test_a_part_that_comes_twice_is_looked_at_once() -> None:
+    lonely = looking(2)
+    for _ in range(2):
+        lonely.front.add_part(part_after(1))
+    assert len(lonely.corrections) == 3
+
+
+def test_parts_change_no_constraint() -> None:
+    with_parts, without = looking(1), looking(1)
+    for number in range(1, 4):
+        with_parts.front.add_part(part_after(number - 1))
+        for lonely in (with_parts, without):
+            lonely.front.add_scan(scans()[number])
+            lonely.front.add_answer(answer(lonely.reports))
+    assert len(with_parts.corrections) > len(without.corrections)
+    for one, other in zip(with_parts.reports, without.reports, strict=True):
+        assert one.pose.tobytes() == other.pose.tobytes()
+        for edge, same in zip(one.constraints, other.constraints, strict=True):
+            assert edge.relative_pose.tobytes() == same.relative_pose.tobytes()
+            assert edge.covariance.tobytes() == same.covariance.tobytes()

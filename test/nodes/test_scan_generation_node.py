@@ -29,7 +29,7 @@ BEAMS = [message for topic, message in SENT if topic is topics.SONAR_PING]
 @pytest.fixture
 def node() -> Iterator[Fed]:
     with fed("scan_generation") as feeder:
-        for topic in (topics.SCAN, topics.SCAN_BEAMS, topics.RECKONED_PATH):
+        for topic in (topics.SCAN, topics.SCAN_BEAMS, topics.SCAN_PART, topics.RECKONED_PATH):
             feeder.hear(topic)
         for topic in (topics.SONAR_PING, topics.SETTLED_ODOMETRY):
             feeder.offer(topic)
@@ -81,6 +81,20 @@ def test_scans_are_the_core_s_to_the_bit(node: Fed, beams_first: bool) -> None:
     usable = [scan for scan in expected if scan.usable]
     wait_until(lambda: len(node.heard(topics.SCAN)) == len(usable), "clouds")
     assert [cloud.width for cloud in node.heard(topics.SCAN)] == [len(s.points) for s in usable]
+
+
+def test_of_each_turn_the_first_third_is_told_before_it_is_whole(node: Fed) -> None:
+    send_odometry(node, odometry())
+    for message in BEAMS:
+        node.send(topics.SONAR_PING, message)
+    wait_until(lambda: len(node.heard(topics.SCAN_BEAMS)) == 2, "two whole turns")
+    wait_until(lambda: len(node.heard(topics.SCAN_PART)) >= 2, "their parts")
+    parts = [link_decoding.scan_beams(message) for message in node.heard(topics.SCAN_PART)]
+    for part, scan in zip(parts, expected_scans(), strict=False):
+        count = len(part.beam_stamps_ns)
+        np.testing.assert_array_equal(part.beam_stamps_ns, scan.beam_stamps_ns[:count])
+        assert count == pytest.approx(len(scan.beam_stamps_ns) / 3, abs=2)
+        assert not part.complete
 
 
 def test_save_waits_for_odometry_and_the_path_ends_with_the_newest(node: Fed) -> None:
