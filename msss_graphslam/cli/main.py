@@ -39,6 +39,15 @@ _COMMANDS: dict[str, Command] = {
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``msss`` with the given arguments, or the process's; return the exit code."""
+    code = _executed(arguments)
+    if arguments is None and "rclpy" in sys.modules:
+        from msss_graphslam.ros.running import leave
+
+        leave(code)
+    return code
+
+
+def _executed(arguments: Sequence[str] | None) -> int:
     parsed = _parser().parse_args(arguments)
     console = Console(quiet=parsed.quiet, as_json=parsed.json)
     try:

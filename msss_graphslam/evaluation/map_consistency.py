@@ -5,6 +5,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from msss_graphslam.core.types import Array
@@ -29,11 +30,10 @@ def wall_thickness(points: Array) -> float | None:
     if not len(planar):
         return None
     sample = planar[:: -(-len(planar) // _LARGEST_SAMPLE)]
-    neighbours = cKDTree(planar).query_ball_point(sample, _RADIUS)
-    thicknesses = [
-        _minor_axis(planar[indices]) for indices in neighbours if len(indices) > _FEWEST_NEIGHBOURS
-    ]
-    return float(np.median(thicknesses)) if thicknesses else None
+    of, other = _near(sample, planar, _RADIUS)
+    steps = planar[other] - sample[of]
+    thicknesses = _minor_axes(of, steps, len(sample))
+    return float(np.median(thicknesses)) if len(thicknesses) else None
 
 
 def seen_again(clouds: Sequence[Array]) -> float | None:
@@ -49,11 +49,35 @@ def seen_again(clouds: Sequence[Array]) -> float | None:
     places = np.concatenate(filled)
     scans = np.repeat(np.arange(len(filled)), [len(cloud) for cloud in filled])
     sample = np.arange(0, len(places), -(-len(places) // _LARGEST_SAMPLE))
-    neighbours = cKDTree(places).query_ball_point(places[sample], _SAME_PLACE)
-    pairs = zip(sample, neighbours, strict=True)
-    return float(np.mean([np.any(scans[near] != scans[number]) for number, near in pairs]))
+    of, other = _near(places[sample], places, _SAME_PLACE)
+    elsewhere = of[scans[other] != scans[sample[of]]]
+    return float(np.mean(np.bincount(elsewhere, minlength=len(sample)) > 0))
 
 
-def _minor_axis(points: Array) -> float:
-    variance = np.linalg.eigvalsh(np.cov(points.T))[0]
-    return float(np.sqrt(max(variance, 0.0)))
+def _near(
+    sample: Array, points: Array, radius: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the rows (p,) of all pairs of a sample's point and a point no farther than that."""
+    pairs = cKDTree(sample).sparse_distance_matrix(cKDTree(points), radius, output_type="ndarray")
+    return pairs["i"], pairs["j"]
+
+
+def _minor_axes(of: NDArray[np.intp], steps: Array, count: int) -> Array:
+    """Return the standard deviation [m] along the minor axis for each that has neighbours enough.
+
+    ``steps`` (p, 2) [m] lead to the neighbours, that of the row ``of`` (p,) below ``count`` each.
+    """
+
+    def total(values: Array) -> Array:
+        return np.asarray(np.bincount(of, values, minlength=count)[is_wall], dtype=float)
+
+    neighbours = np.bincount(of, minlength=count)
+    is_wall = neighbours > _FEWEST_NEIGHBOURS
+    number = neighbours[is_wall]
+    x, y = steps.T
+    mean_x, mean_y = total(x) / number, total(y) / number
+    square_x = total(x * x) - number * mean_x**2
+    square_y = total(y * y) - number * mean_y**2
+    product = total(x * y) - number * mean_x * mean_y
+    minor = 0.5 * (square_x + square_y) - np.hypot(0.5 * (square_x - square_y), product)
+    return np.asarray(np.sqrt(np.maximum(minor, 0.0) / (number - 1)))

@@ -47,7 +47,7 @@ def run_picture(assessment: Assessment, number: int) -> Picture | None:
     plate = run_plate(assessment, number)
     if plate is None:
         return None
-    return Picture(plate.name, plate.title, plate.caption, png(plate))
+    return Picture(plate.name, plate.title, plate.caption, png(plate, DPI))
 
 
 def comparison_pictures(assessments: Sequence[Assessment]) -> list[Picture]:
@@ -55,4 +55,4 @@ def comparison_pictures(assessments: Sequence[Assessment]) -> list[Picture]:
     from msss_graphslam.evaluation.figures.plates import comparison_plates, png
 
     plates = comparison_plates(assessments)
-    return [Picture(plate.name, plate.title, plate.caption, png(plate)) for plate in plates]
+    return [Picture(plate.name, plate.title, plate.caption, png(plate, DPI)) for plate in plates]

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A whole run of the nodes: what must be there is looked for first, then a session."""
 
+import shlex
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,33 +20,40 @@ from msss_graphslam.results.directory import ResultDirectory
 __all__ = ["run"]
 
 _LOGS = "log"
+_SUMMARY = "summary.json"
 _ABSENT = "was not found at the end, its last data may be missing"
 
 
 def run(setup: Setup, say: Say, progress: Progress) -> Outcome:
     """Run every node as a process of its own, and have the results written.
 
-    Raises UserError where that cannot be, before anything is started if it can be known then, or
-    where no results were written.
+    Raises UserError where that cannot be, before anything is started if it can be known then,
+    where no results were written, or where a second signal has broken that off.
     """
     setup = _checked(setup)
     directory = ResultDirectory.create(setup.output)
-    summary = directory.path / "summary.json"
-    before = _changed_at(summary)
+    before = _files(directory.path)
+    try:
+        outcome = _session(setup, directory.path / _LOGS, say, progress)
+    except KeyboardInterrupt as interrupt:
+        raise UserError(_lost(setup, _files(directory.path) - before)) from interrupt
+    if not any(path.name == _SUMMARY for path, _ in _files(directory.path) - before):
+        raise UserError(f"{setup.output}: nothing written, {_reason(outcome)}")
+    absent = {name: _ABSENT for name in saving_order(setup) if name not in outcome.answers}
+    return replace(outcome, failed=absent | outcome.failed)
+
+
+def _session(setup: Setup, logs: Path, say: Say, progress: Progress) -> Outcome:
     with TemporaryDirectory(prefix="msss_live_") as folder:
-        outcome = run_session(
+        return run_session(
             command_table(setup, Path(folder)),
-            directory.path / _LOGS,
+            logs,
             saving=saving_order(setup),
             until=REPLAY if setup.replay is not None else None,
             concluding=concluding_in(setup.namespace),
             say=say,
             progress=progress,
         )
-    if _changed_at(summary) == before:
-        raise UserError(f"{setup.output}: nothing written, {_reason(outcome)}")
-    absent = {name: _ABSENT for name in saving_order(setup) if name not in outcome.answers}
-    return replace(outcome, failed=absent | outcome.failed)
 
 
 def _checked(setup: Setup) -> Setup:
@@ -72,5 +80,17 @@ def _reason(outcome: Outcome) -> str:
     return f"{writer}: {outcome.answers.get(writer, 'was not found')}"
 
 
-def _changed_at(path: Path) -> int | None:
-    return path.stat().st_mtime_ns if path.exists() else None
+def _lost(setup: Setup, written: set[tuple[Path, int]]) -> str:
+    """Return what there is not where saving was broken off, and whether it can be made again."""
+    names = sorted(path.name for path, _ in written)
+    lost = f"all but {', '.join(names)} is lost" if names else "nothing was written"
+    bag = setup.record or setup.replay
+    command = shlex.join(["msss", "run", str(bag), "--out", str(setup.output)])
+    again = f"make it anew by `{command}`" if bag else "no bag has it"
+    return f"{setup.output}: ended by the second signal, {lost}; {again}"
+
+
+def _files(folder: Path) -> set[tuple[Path, int]]:
+    """Return the files with the times [ns] of their last change, those being written left out."""
+    found = (path for path in folder.iterdir() if path.is_file() and path.name[0] != ".")
+    return {(path, path.stat().st_mtime_ns) for path in found}

@@ -25,8 +25,7 @@ Conclude = Callable[[Sequence[str], Progress], dict[str, str]]
 _RUNNING = 0.8
 """Share of a session, as its progress shows it; the rest is for its end."""
 
-_HASTE = 0.5
-"""How long a node may take to end [s] where a second signal has come."""
+_ENDING = "ending: all is worked off and written first; a second Ctrl-C ends without"
 
 _SHARE = re.compile(r"replayed (\d+) %")
 """What the replay says at each tenth."""
@@ -67,10 +66,13 @@ def run_session(
             session.supervisor.start()
             with concluding as conclude:
                 session.watch(interruption)
+                if interruption.wished:
+                    say(_ENDING)
                 answers = session.save(conclude)
         except KeyboardInterrupt:
             interruption.deaf = True
-            session.supervisor.stop(patience=_HASTE)
+            session.tell("ending at once")
+            session.supervisor.stop_at_once()
             raise
         finally:
             interruption.deaf = True
@@ -95,7 +97,7 @@ class _Session:
         self._saving = saving
         self._until = until
         self._progress = progress
-        self._share = self._saved = 0.0
+        self._share = self._saved = self._asked = 0.0
         self._saving_what = ""
 
     def watch(self, interruption: Interruption) -> None:
@@ -117,6 +119,11 @@ class _Session:
             raise UserError(f"nothing written, {writer}: {self.supervisor.failed[writer]}")
         return conclude(names, self._save_progress)
 
+    def tell(self, what: str) -> None:
+        """Show what is being done after the nodes' work."""
+        done = max(self._saved, self._asked)
+        self._progress(_RUNNING + (1.0 - _RUNNING) * done, what)
+
     def _is_over(self) -> bool:
         if any(name in self.supervisor.failed for name in self._saving):
             return True
@@ -125,9 +132,8 @@ class _Session:
     def _save_progress(self, share: float, what: str) -> None:
         """Show how far saving is; who dies meanwhile is started again."""
         self.supervisor.look()
-        share = max(share, self._saved)
-        done = _RUNNING + (1.0 - _RUNNING) * share
-        self._progress(done, f"saving {self._saving_what or what}".rstrip())
+        self._asked = share
+        self.tell(f"saving {self._saving_what or what}".rstrip())
 
     def _hear(self, name: str, line: str) -> None:
         if name == self._until and (found := _SHARE.search(line)):

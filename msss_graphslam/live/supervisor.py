@@ -22,9 +22,9 @@ LOOK_EVERY = 0.05
 _WAIT = 0.01
 """Time between two looks at processes that have been told to end [s]."""
 
-_PATIENCE = 3.0
-_FAREWELLS = ((signal.SIGTERM, 0.5), (signal.SIGKILL, 2.0))
-"""How long SIGINT is waited for, what is sent then, and how long each is waited for [s]."""
+_FAREWELLS = ((signal.SIGINT, 3.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 2.0))
+_HASTY_FAREWELLS = ((signal.SIGINT, 0.5), (signal.SIGKILL, 2.0))
+"""What is sent to a process that shall end, and how long each is waited for [s]."""
 
 _ENVIRONMENT = {"PYTHONUNBUFFERED": "1", "OMP_NUM_THREADS": "1"}
 """Lines reach the logs at once; the processes share the cores, so none spreads over them all."""
@@ -92,23 +92,32 @@ class Supervisor:
             if not watched.is_leaving and watched.restarts.take(self._clock()):
                 watched.start_again()
 
-    def stop(self, *names: str, patience: float = _PATIENCE) -> None:
-        """End the named processes, or all: by SIGINT, then by SIGTERM, at last by SIGKILL.
-
-        ``patience`` is how long [s] SIGINT alone is waited for.
-        """
+    def stop(self, *names: str) -> None:
+        """End the named processes, or all: by SIGINT, then by SIGTERM, at last by SIGKILL."""
         leaving = [each for each in self._watched if not names or each.name in names]
+        self._dismiss(leaving, _FAREWELLS, self._say)
+        for watched in leaving:
+            self._listen(watched)
+
+    def stop_at_once(self) -> None:
+        """End all processes, those that are busy by SIGKILL, and listen to none."""
+        self._dismiss(self._watched, _HASTY_FAREWELLS, lambda _: None)
+
+    def _dismiss(
+        self,
+        leaving: Sequence["_Watched"],
+        farewells: Sequence[tuple[signal.Signals, float]],
+        say: Say,
+    ) -> None:
         for watched in leaving:
             watched.is_leaving = True
-        for number, lasting in ((signal.SIGINT, patience), *_FAREWELLS):
+        for number, lasting in farewells:
             left = [watched for watched in leaving if watched.process.is_running]
             for watched in left:
                 if number is not signal.SIGINT:
-                    self._say(f"{watched.name}: does not end, sent {number.name}")
+                    say(f"{watched.name}: does not end, sent {number.name}")
                 watched.process.send(number)
             self._wait_for(left, lasting)
-        for watched in leaving:
-            self._listen(watched)
 
     def _wait_for(self, leaving: Sequence["_Watched"], patience: float) -> None:
         until = time.monotonic() + patience

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node ``back_end``: keyframes in, optimised poses, maps and result files out."""
 
-from collections import Counter, deque
+from collections import deque
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +13,14 @@ from msss_graphslam.messages import encoding, link_decoding
 from msss_graphslam.messages.link_decoding import StampedPose
 from msss_graphslam.messages.topics import GRAPH_POSES, POSE, SCAN_BEAMS, TRIED, Topic
 from msss_graphslam.nodes.arrived import Gathering, take_arrived
+from msss_graphslam.nodes.back_end_settings import BackEndSettings
 from msss_graphslam.nodes.beginning import Beginning
 from msss_graphslam.nodes.closure_count import ClosureCount
-from msss_graphslam.nodes.display import Display
 from msss_graphslam.nodes.live_run import LiveRun
 from msss_graphslam.nodes.mission import Mission
+from msss_graphslam.nodes.mission_files import MissionFiles
 from msss_graphslam.nodes.others_refusals import OthersRefusals
-from msss_graphslam.nodes.saving_process import SavingProcess
-from msss_graphslam.nodes.tenths import Tenths
-from msss_graphslam.nodes.timing import Leisure, Throttle
-from msss_graphslam.offline.estimators import recipe_named
+from msss_graphslam.nodes.showing import Showing
 from msss_graphslam.offline.stopwatch import Stopwatch
 from msss_graphslam.ros.inputs import Input
 from msss_graphslam.ros.messages import make, message_class
@@ -44,8 +42,6 @@ _GROUPS = (
 _CHANGEABLE = ("mapping",)
 _DIAGNOSTICS = Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 _LOOK = 0.2
-_PATH_PERIOD = 2.0
-_REFINING = 0.5
 
 
 class BackEndNode(SlamNode):
@@ -53,17 +49,16 @@ class BackEndNode(SlamNode):
 
     def __init__(self) -> None:
         super().__init__("back_end", _GROUPS, _CHANGEABLE)
-        self._declare()
+        self._settings = BackEndSettings.declared(self.parameters)
         self._others = OthersRefusals(self.get_fully_qualified_name())
         self._closures = ClosureCount(self.diagnostics.values)
         self._held: deque[KeyframeReport] = deque()
         self._gathering = Gathering()
-        self._leisure = Leisure()
         self._beginning = Beginning()
         self._begin()
         self._describe()
         self._poses = self.offer(GRAPH_POSES)
-        self._display = Display(self)
+        self._showing = Showing(self, self._settings.map_period)
         self._subscribed = self._gathering.inputs = self._listen()
         self.create_service(message_class("nav_msgs/srv/GetMap"), "get_map", self._give_map)
         self.every(_LOOK, self._look_after)
@@ -75,62 +70,38 @@ class BackEndNode(SlamNode):
         self._others.clear()
         self._held.clear()
         self._answer()
-        self._display.show_graph(self._mission)
+        self._showing.clear(self._mission)
 
     def on_save(self) -> tuple[bool, str]:
         """Refine a copy of the graph and write all files into the parameter ``output``."""
         take_arrived(self._subscribed)
         self._work_off()
-        if not self._output:
+        if not self._settings.output:
             return True, "nothing written: the parameter output is empty"
         if self._beginning.expects_more(whole=self._mission.is_whole):
             return False, "looking for what was kept of before the start"
         try:
-            self._write(Path(self._output))
+            self._write()
         except UserError as error:
             return True, self._failed(str(error))
         except Exception as error:
             self.faults.note(error, "save")
             return True, self._failed(repr(error))
-        return True, f"wrote {self._output}"
+        return True, f"wrote {self._settings.output}"
 
     def on_parameters(self, configuration: Configuration) -> None:
         """Draw the map anew."""
         del configuration
-        self._map_due.ask()
-
-    def _declare(self) -> None:
-        declare = self.parameters.declare
-        self._recipe = recipe_named(
-            declare("estimator", "full", "name of the estimator, as of msss run")
-        )
-        self._output = declare("output", "", "where save writes its files; '' for none")
-        self._recording = declare(
-            "recording", "", "the bag that is replayed, for the report alone; '' for none"
-        )
-        self._map_period = declare(
-            "map_period",
-            10.0,
-            "shortest time between two maps, by wall time [s]",
-            minimum=0.1,
-            maximum=3600.0,
-        )
+        self._showing.ask_for_map()
 
     def _begin(self) -> None:
         self._watch = Stopwatch()
         self._mission = Mission(
             self.parameters.configuration,
-            self._recipe,
+            self._settings.recipe,
             self.diagnostics.refused,
             self._watch.stage,
         )
-        self._show_nothing_more()
-
-    def _show_nothing_more(self) -> None:
-        """Leave the pictures as they are until something new comes."""
-        self._graph_due = Throttle(0.0)
-        self._path_due = Throttle(_PATH_PERIOD)
-        self._map_due = Throttle(self._map_period)
 
     def _describe(self) -> None:
         values = self.diagnostics.values
@@ -174,65 +145,40 @@ class BackEndNode(SlamNode):
                 self._answer()
             if is_new:
                 self._closures.add(report.constraints)
-                self._leisure.end()
-                self._ask_for_all()
-        self._graph_due.run(self._show_graph)
+                self._showing.ask_for_all()
+        self._showing.graph(self._mission)
 
     def _answer(self) -> None:
         known = self._mission.answer()
         message = encoding.graph_poses(make, known)
         self._poses.publish(message, known.poses, known.covariances)
 
-    def _ask_for_all(self) -> None:
-        for due in (self._graph_due, self._path_due, self._map_due):
-            due.ask()
-
     def _look_after(self) -> None:
         if not self.paused:
             self._work_off()
-        if not self._leisure.lasts:
-            return
-        self._path_due.run(lambda: self._display.show_path(self._mission.trajectory()))
-        self._map_due.run(self._show_maps)
-
-    def _show_graph(self) -> None:
-        self._display.show_graph(self._mission)
-
-    def _show_maps(self) -> None:
-        self._display.show_maps(self._mission, self.parameters.configuration)
+        self._showing.at_leisure(self._mission)
 
     def _give_map(self, _request: Any, response: Any) -> Any:
         try:
-            response.map = self._display.map_message(self._mission, self.parameters.configuration)
+            response.map = self._showing.map_message(self._mission)
         except Exception as error:
             self.faults.note(error, "get_map")
         return response
 
-    def _write(self, output: Path) -> None:
+    def _write(self) -> None:
         self.diagnostics.clear()
-        refused: Counter[str] = self.diagnostics.refused + self._others.total
-        tell = Tenths(self.log)
-        # What writes makes ready while the graph is refined.
-        with SavingProcess(self._recording, self._complain) as saving:
-            estimate = self._mission.logbook().finish(
-                lambda share: tell(_REFINING * share, "refinement")
-            )
-            run_of = LiveRun(
-                self.parameters.configuration,
-                self._recipe.name,
-                refused,
-                self._mission.beams,
-                self._watch.cost,
-            )
-            maps = saving.save(
-                estimate,
-                run_of,
-                output,
-                lambda share, what: tell(_REFINING + (1.0 - _REFINING) * share, what),
-            )
-        self._display.show_path(estimate.trajectory)
-        self._display.show_map(self._mission.newest_ns, *maps)
-        self._show_nothing_more()
+        output, recording = Path(self._settings.output), self._settings.recording
+        files = MissionFiles(output, recording, self.log, self._complain)
+        self._showing.result(self._mission, *files.write(self._mission, self._run_so_far))
+
+    def _run_so_far(self) -> LiveRun:
+        return LiveRun(
+            self.parameters.configuration,
+            self._settings.recipe.name,
+            self.diagnostics.refused + self._others.total,
+            self._mission.beams,
+            self._watch.cost,
+        )
 
     def _complain(self, text: str) -> None:
         self.get_logger().error(text)

@@ -5,17 +5,20 @@
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Self
 
-from msss_graphslam.core.types import Estimate, Trajectory
+from msss_graphslam.core.types import Beam, Estimate, Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.evaluation.assessment import assess
 from msss_graphslam.evaluation.report import write_report
+from msss_graphslam.evaluation.summary import summarise
 from msss_graphslam.nodes.live_run import LiveRun, Maps
+from msss_graphslam.offline.beside import Beside
 from msss_graphslam.offline.drawing import Drawing
 from msss_graphslam.offline.stopwatch import Stopwatch
-from msss_graphslam.offline.writing import command_line, record_of, write_assessed
+from msss_graphslam.offline.writing import command_line, example_beams, record_of
 from msss_graphslam.recordings.reader import Recording, open_recording
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import Cost, RunRecord
@@ -62,32 +65,45 @@ def save(
         raise UserError("no scan has come in")
     directory = ResultDirectory.create(output)
     progress(0.0, "maps")
-    record = _record(result, run, source)
+    result, lack = _with_online(result)
+    trajectories = Beside(partial(directory.write_trajectories, result))
+    record = _record(result, run, source, lack)
     assessment = assess(record)
     drawing = Drawing(assessment)
     progress(0.4, "files")
-    write_assessed(assessment, directory)
+    directory.write_graph_and_maps(record)
+    trajectories.result()
+    directory.write_summary(summarise(assessment))
     progress(0.7, "figures")
     write_report(directory, assessment, drawing.pictures())
     return record.points, record.grid
 
 
-def _record(result: Estimate, run: LiveRun, source: Source) -> RunRecord:
-    was_online = len(result.online.stamps_ns) > 0
+def _with_online(result: Estimate) -> tuple[Estimate, tuple[str, ...]]:
+    """Return the estimate with what was known online, and what is to be said of that."""
+    if len(result.online.stamps_ns):
+        return result, ()
+    # Without dead reckoning's node nobody had more than this.
+    return replace(result, online=result.dead_reckoning), (_NOT_ONLINE,)
+
+
+def _record(result: Estimate, run: LiveRun, source: Source, lack: tuple[str, ...]) -> RunRecord:
+    recording, configuration = source.recording, run.configuration
+    example: Callable[[], tuple[Beam, ...]] = tuple
+    if recording is not None:
+        example = Beside(partial(example_beams, recording, result, configuration)).result
     record = record_of(
-        # Without dead reckoning's node nobody had more than this.
-        result if was_online else replace(result, online=result.dead_reckoning),
-        run.configuration,
-        source.recording,
+        result,
+        configuration,
+        recording,
         run.refused + source.refused,
         run.beams,
         Stopwatch(),
-        _command(run, source.recording),
+        _command(run, recording),
         source.truth,
+        example,
     )
-    if not was_online:
-        missing = (*record.bag.missing, _NOT_ONLINE)
-        record = replace(record, bag=replace(record.bag, missing=missing))
+    record = replace(record, bag=replace(record.bag, missing=(*record.bag.missing, *lack)))
     return replace(record, cost=_sum(run.cost, record.cost))
 
 

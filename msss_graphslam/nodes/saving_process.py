@@ -6,6 +6,7 @@ What writes and draws them is loaded there, while the back end refines its graph
 takes the node's memory nor its time.
 """
 
+import gc
 import os
 import pickle
 import signal
@@ -98,9 +99,10 @@ class SavingProcess:
 
 
 def _main(recording: str) -> None:
-    from msss_graphslam.offline.drawing import end_with_parent
+    from msss_graphslam.offline.beside import end_with_parent
 
     end_with_parent()
+    gc.disable()  # It ends before its garbage matters.
     import msss_graphslam.evaluation.figures.plates  # noqa: F401 - in time
     from msss_graphslam.nodes.saving import Source, save
 

@@ -1,15 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""When to do slow things, and when nothing is on its way any more: by wall time."""
+"""When to do slow things: by wall time."""
 
 from collections.abc import Callable
 from time import monotonic
 
-__all__ = ["Leisure", "Stillness", "Throttle"]
+__all__ = ["Leisure", "Throttle"]
 
 _LEISURE = 10.0
-_STILL = 1.0
-_FORGOTTEN = 5.0
 
 
 class Throttle:
@@ -64,28 +62,3 @@ class Leisure:
         """Whether there is time."""
         since = self._clock() - self._last
         return since < 0.5 * self._interval or since > 2.0 * self._interval
-
-
-class Stillness:
-    """Whether all that was sent before somebody asked must have arrived by now.
-
-    The answer of another node may overtake what it has published before; so the first question is
-    never answered with yes.
-    """
-
-    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
-        self._clock = clock
-        self._arrival = self._asked = -1e9
-        self._since = -1e9
-
-    def stir(self) -> None:
-        """Note an arrival."""
-        self._arrival = self._clock()
-
-    def holds(self) -> bool:
-        """Answer the question."""
-        now = self._clock()
-        if now - self._asked > _FORGOTTEN:
-            self._since = now
-        self._asked = now
-        return now - max(self._arrival, self._since) >= _STILL

@@ -4,6 +4,7 @@
 
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.types import Beam
 from msss_graphslam.errors import UserError
+from msss_graphslam.offline.freed_memory import give_back
 from msss_graphslam.offline.stopwatch import Stopwatch
-from msss_graphslam.offline.writing import command_line, record_of
+from msss_graphslam.offline.writing import command_line, example_beams, record_of
 from msss_graphslam.recordings.reader import Recording
 from msss_graphslam.results.record import RunRecord
 
@@ -49,10 +51,18 @@ def estimate(
     if not beams:
         reasons = ", ".join(f"{reason} {count}" for reason, count in refused.most_common())
         raise UserError(f"{recording.path}: no beam can be used ({reasons}); see `msss inspect`")
-    result = pipeline.finish(lambda share: progress(READING + REFINING * share, "refinement"))
+    result = pipeline.finish(partial(_refining, progress))
     progress(READING + REFINING, "maps")
     truth = recording.ground_truth(refused)
-    return record_of(result, configuration, recording, refused, beams, watch, command, truth)
+    example = partial(example_beams, recording, result, configuration)
+    return record_of(
+        result, configuration, recording, refused, beams, watch, command, truth, example
+    )
+
+
+def _refining(progress: Progress, share: float) -> None:
+    give_back()
+    progress(READING + REFINING * share, "refinement")
 
 
 def _command(recording: Recording, recipe: Recipe, configuration: Configuration) -> str:

@@ -4,7 +4,7 @@
 
 import shlex
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from msss_graphslam import __version__
 from msss_graphslam.config.configuration import Configuration
@@ -18,7 +18,7 @@ from msss_graphslam.recordings.reader import Recording
 from msss_graphslam.results.directory import ResultDirectory
 from msss_graphslam.results.record import BagInfo, RunRecord, example_scan
 
-__all__ = ["command_line", "record_of", "write_assessed", "write_results"]
+__all__ = ["command_line", "example_beams", "record_of", "write_results"]
 
 
 def command_line(words: Sequence[str], configuration: Configuration) -> str:
@@ -41,10 +41,12 @@ def record_of(
     watch: Stopwatch,
     command: str,
     truth: Trajectory | None,
+    example: Callable[[], tuple[Beam, ...]] = tuple,
 ) -> RunRecord:
     """Return all that is known at the end of a run.
 
-    Without a recording there is neither a truth nor an example of raw echoes.
+    Without a recording there is neither a truth nor an example of raw echoes. ``example`` gives
+    that when all else is known.
     """
     with watch.stage("mapping"):
         points = map_points(result.keyframes)
@@ -62,21 +64,28 @@ def record_of(
         cost=watch.cost,
         version=__version__,
         command=command,
-        example_beams=_example_beams(recording, result, configuration) if recording else (),
+        example_beams=example(),
     )
 
 
 def write_results(record: RunRecord, directory: ResultDirectory) -> Assessment:
     """Write the estimate and its summary; return the assessment for a report."""
     assessment = assess(record)
-    write_assessed(assessment, directory)
+    directory.write_estimate(record)
+    directory.write_summary(summarise(assessment))
     return assessment
 
 
-def write_assessed(assessment: Assessment, directory: ResultDirectory) -> None:
-    """Write the estimate and its summary."""
-    directory.write_estimate(assessment.record)
-    directory.write_summary(summarise(assessment))
+def example_beams(
+    recording: Recording, result: Estimate, configuration: Configuration
+) -> tuple[Beam, ...]:
+    """Return the recorded beams of the scan that a report shows."""
+    number = example_scan(result)
+    if number is None:
+        return ()
+    stamps = set(result.keyframes[number].scan.beam_stamps_ns.tolist())
+    beams = recording.beams(min(stamps), max(stamps), configuration)
+    return tuple(beam for beam in beams if beam.stamp_ns in stamps)
 
 
 def _bag_info(recording: Recording) -> BagInfo:
@@ -93,14 +102,3 @@ def _bag_info(recording: Recording) -> BagInfo:
 def _live_info(result: Estimate) -> BagInfo:
     stamps = result.trajectory.stamps_ns
     return BagInfo("live data", int(stamps[0]), int(stamps[-1]), messages={})
-
-
-def _example_beams(
-    recording: Recording, result: Estimate, configuration: Configuration
-) -> tuple[Beam, ...]:
-    number = example_scan(result)
-    if number is None:
-        return ()
-    stamps = set(result.keyframes[number].scan.beam_stamps_ns.tolist())
-    beams = recording.beams(min(stamps), max(stamps), configuration)
-    return tuple(beam for beam in beams if beam.stamp_ns in stamps)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from msss_graphslam.core.types import Trajectory
+from msss_graphslam.core.types import Estimate, Trajectory
 from msss_graphslam.errors import UserError
 from msss_graphslam.results.atomic import write_text
 from msss_graphslam.results.constraint_table import write_constraint_table
@@ -41,10 +41,18 @@ class ResultDirectory:
 
     def write_estimate(self, record: RunRecord) -> None:
         """Write the trajectories, the graph, the maps and the bag of the output topics."""
-        estimate = record.estimate
+        self.write_trajectories(record.estimate)
+        self.write_graph_and_maps(record)
+
+    def write_trajectories(self, estimate: Estimate) -> None:
+        """Write where the vehicle was at each beam, and where it was thought to be."""
         write_trajectory(self.path / "trajectory.tum", estimate.trajectory)
         write_trajectory(self.path / "online.tum", estimate.online)
         write_trajectory(self.path / "dead_reckoning.tum", estimate.dead_reckoning)
+
+    def write_graph_and_maps(self, record: RunRecord) -> None:
+        """Write the rest of what was estimated."""
+        estimate = record.estimate
         write_trajectory(self.path / "keyframes.tum", record.keyframe_trajectory)
         write_pose_graph(self.path / "graph.g2o", estimate.keyframes, estimate.constraints)
         write_constraint_table(self.path / "constraints.csv", estimate.constraints)

@@ -123,7 +123,7 @@ def test_a_recording_of_less_than_a_turn_still_has_figures(assessment):
     )
     plates = run_plates(assess(record))
     assert [plate.name for plate in plates] == ["trajectories", "maps", "errors", "timing"]
-    assert all(png(plate) for plate in plates)
+    assert all(png(plate, 150) for plate in plates)
 
 
 def test_a_comparison_shows_all_estimators_in_one_set_of_figures():

@@ -115,6 +115,42 @@ def test_results_of_an_earlier_run_are_not_taken_for_new_ones(
 
 
 @pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ((), "nothing was written"),
+        (("map.ply", ".map.7.pgm", "keyframes.tum"), "all but keyframes.tum, map.ply is lost"),
+    ],
+)
+@pytest.mark.parametrize("option", ["--record", "--replay", ""])
+def test_a_second_signal_is_exit_code_1_and_says_what_is_lost(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: Captured,
+    written: tuple[str, ...],
+    said: str,
+    option: str,
+) -> None:
+    out, bag = tmp_path / "out", tmp_path / "dive"
+    if option == "--replay":
+        bag = write_bag(bag)
+    out.mkdir()
+    (out / "trajectory.tum").write_text("of an earlier run")
+
+    def break_off(*_: object, **__: object) -> Outcome:
+        for name in written:
+            (out / name).write_text("")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(live_run, "run_session", break_off)
+    options = [option, str(bag)] if option else []
+    assert main(["live", "--out", str(out), *options]) == ExitCode.CANNOT_GO_ON
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert f"ended by the second signal, {said};" in err
+    assert (f"`msss run {bag} --out {out}`" if option else "no bag has it") in err
+
+
+@pytest.mark.parametrize(
     ("arguments", "is_started"),
     [
         ((), False),

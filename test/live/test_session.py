@@ -107,6 +107,15 @@ def session_in(logs: Path, looks: int = 0) -> "subprocess.Popen[str]":
     return process
 
 
+def await_line(process: "subprocess.Popen[str]", wanted: str) -> None:
+    """Read on until the session says this line; what it says first is left out."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line == wanted:
+            return
+    raise AssertionError(f"never said {wanted!r}")
+
+
 def pid_in(log: Path) -> int:
     """Return the pid that a stand-in has said, or 0."""
     said, ended, _ = (log.read_text(encoding="utf-8") if log.exists() else "").partition("\n")
@@ -185,7 +194,9 @@ def test_a_signal_ends_it_and_everything_is_saved(tmp_path: Path, number: signal
     process.send_signal(number)
     out, _ = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert out.splitlines() == ["concluding", "concluded one two", "over [{}, {}]"]
+    remark, *rest = out.splitlines()
+    assert remark.startswith("ending: ")
+    assert rest == ["concluding", "concluded one two", "over [{}, {}]"]
     for name in ("one", "two"):
         assert (tmp_path / f"{name}.log").read_text().splitlines()[1:] == ["got SIGINT"]
 
@@ -203,14 +214,14 @@ def test_a_second_wish_breaks_off_the_saving_and_leaves_no_process(tmp_path: Pat
     process = session_in(tmp_path, looks=1200)
     pids = [pid_in(tmp_path / f"{name}.log") for name in ("one", "two")]
     process.send_signal(signal.SIGINT)
-    assert process.stdout is not None
-    assert process.stdout.readline() == "concluding\n"
+    await_line(process, "concluding\n")
 
     def insist() -> None:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
 
     wait_until(lambda: process.poll() is not None, insist)
+    assert process.stdout is not None
     process.stdout.close()
     assert process.returncode != 0
     assert not any(map(is_alive, pids))
@@ -219,8 +230,7 @@ def test_a_second_wish_breaks_off_the_saving_and_leaves_no_process(tmp_path: Pat
 def test_who_dies_during_the_saving_comes_back(tmp_path: Path) -> None:
     process = session_in(tmp_path, looks=40)
     process.send_signal(signal.SIGINT)
-    assert process.stdout is not None
-    assert process.stdout.readline() == "concluding\n"
+    await_line(process, "concluding\n")
     subprocess.run(["kill", "-9", str(pid_in(tmp_path / "one.log"))], check=True)
     out, _ = process.communicate(timeout=60)
     assert json.loads(out.splitlines()[-1].removeprefix("over ")) == [{}, {"one": 1}]

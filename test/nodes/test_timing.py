@@ -4,7 +4,7 @@
 
 import pytest
 
-from msss_graphslam.nodes.timing import Leisure, Stillness, Throttle
+from msss_graphslam.nodes.timing import Leisure, Throttle
 
 
 class Clock:
@@ -43,34 +43,6 @@ def test_long_work_is_done_more_rarely() -> None:
     assert not throttle.run(work)
     clock.now += 0.8
     assert throttle.run(work)
-
-
-def test_the_first_question_is_not_answered_with_yes() -> None:
-    clock = Clock()
-    still = Stillness(clock)
-    assert not still.holds()
-    clock.now += 1.2
-    assert still.holds()
-
-
-def test_an_arrival_makes_the_question_new() -> None:
-    clock = Clock()
-    still = Stillness(clock)
-    still.holds()
-    clock.now += 0.8
-    still.stir()
-    clock.now += 0.8
-    assert not still.holds()
-    clock.now += 0.2
-    assert still.holds()
-
-
-def test_who_asks_a_long_time_later_waits_again() -> None:
-    clock = Clock()
-    still = Stillness(clock)
-    still.holds()
-    clock.now += 60.0
-    assert not still.holds()
 
 
 def leisure_after_two_keyframes(clock: Clock) -> Leisure:

@@ -10,7 +10,7 @@ import pytest
 from nodes.processes import Domain, NodeProcess, wait_until
 from system.comparison import assert_same, summary
 from system.fleet import Fleet
-from system.missions import Mission
+from system.missions import Mission, run_offline
 from system.witness import Witness
 
 from msss_graphslam.recordings.reader import open_recording
@@ -74,6 +74,7 @@ def test_live_ends_by_itself_with_the_bag_and_the_result(
     for name in ("/sonar/ping", "/imu/data", "/pressure"):
         assert topics[name].count == inputs[name].count
     assert topics["/pose"].count > 0
+    assert_same(run_offline(recorded, tmp_path / "again").offline, pond.offline)
 
 
 @pytest.mark.parametrize("first", ["trajectory.tum", "result.mcap"])

@@ -6,11 +6,11 @@ from collections import Counter
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from msss_graphslam.core.types import Constraint, ConstraintKind
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.figures.network import refusal_colours
+from msss_graphslam.evaluation.figures.panels import panels, room_for
 from msss_graphslam.evaluation.figures.style import ACCENT, Plate, phrase
 
 __all__ = ["closures"]
@@ -23,9 +23,12 @@ def closures(assessment: Assessment) -> Plate | None:
     ]
     if not loops:
         return None
-    figure = Figure(figsize=(9.0, 3.2), layout="constrained")
-    fates, spans = figure.subplots(1, 2, width_ratios=(3, 2))
-    _draw_fates(fates, loops)
+    colours = {"": ACCENT} | refusal_colours(loops)
+    names = ["accepted" if not reason else phrase(reason) for reason in colours]
+    figure, ((fates, spans),) = panels(
+        1, 2, 2.6, left=room_for(names), between=(0.8, 0.0), width_ratios=(3, 2)
+    )
+    _draw_fates(fates, loops, colours, names)
     _draw_spans(spans, [edge.second - edge.first for edge in loops if edge.accepted])
     caption = (
         "Left: what became of every loop closure that was tried. Right: the number of scans"
@@ -34,10 +37,10 @@ def closures(assessment: Assessment) -> Plate | None:
     return Plate("closures", "Loop closures, accepted and refused", caption, figure)
 
 
-def _draw_fates(axes: Axes, loops: list[Constraint]) -> None:
-    colours = {"": ACCENT} | refusal_colours(loops)
+def _draw_fates(
+    axes: Axes, loops: list[Constraint], colours: dict[str, str], names: list[str]
+) -> None:
     counts = Counter(edge.refusal for edge in loops)
-    names = ["accepted" if not reason else phrase(reason) for reason in colours]
     bars = axes.barh(names, [counts[reason] for reason in colours], color=list(colours.values()))
     axes.bar_label(bars, padding=3, color="#333a42")
     axes.invert_yaxis()

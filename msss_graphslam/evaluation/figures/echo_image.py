@@ -4,11 +4,11 @@
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from msss_graphslam.core.compounding import transform_points
 from msss_graphslam.core.types import Array, Beam, Stamps
 from msss_graphslam.evaluation.assessment import Assessment
+from msss_graphslam.evaluation.figures.panels import square_panels
 from msss_graphslam.evaluation.figures.style import Plate
 from msss_graphslam.results.record import example_scan
 
@@ -27,8 +27,7 @@ def echo_image(assessment: Assessment) -> Plate | None:
         return None
     sonar = record.configuration["sonar"]
     mount = np.array([sonar["mount_x"], sonar["mount_y"], sonar["mount_yaw"]])
-    figure = Figure(figsize=(9.0, 4.8), layout="compressed")
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    figure, panels = square_panels(2)
     _draw(panels[0], beams, mount, np.zeros((len(beams), 3)), "as measured")
     _draw(panels[1], beams, mount, scan.motion[rows], "corrected")
     panels[0].set_ylabel("y, to port [m]")

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.errors import PoseErrors
+from msss_graphslam.evaluation.figures.panels import panels
 from msss_graphslam.evaluation.figures.style import Plate, colour, label, minutes
 
 __all__ = ["corrections", "errors_over_time"]
@@ -70,8 +71,7 @@ def corrections(assessments: Sequence[Assessment]) -> Plate:
 
 
 def _panels() -> tuple[Figure, tuple[Axes, Axes]]:
-    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    figure, ((upper,), (lower,)) = panels(2, 1, 4.3, sharex=True, height_ratios=(3, 2))
     upper.margins(x=0.0)
     lower.set_xlabel("time since the start of the recording [min]")
     return figure, (upper, lower)

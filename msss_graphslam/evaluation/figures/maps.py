@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Maps: points by estimator side by side (the paper's Figure 12), and the occupancy grid."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 
 from msss_graphslam.core.compounding import transform_points
 from msss_graphslam.core.types import Array
-from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment, dead_reckoned_points
-from msss_graphslam.evaluation.figures.style import Plate, colour, label, map_extent, map_figure
+from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment
+from msss_graphslam.evaluation.figures.panels import map_extent, map_figure
+from msss_graphslam.evaluation.figures.style import Plate, colour, label
 from msss_graphslam.evaluation.figures.trajectories import draw_ends, draw_points, draw_track
 from msss_graphslam.evaluation.map_consistency import seen_again
 
@@ -21,17 +22,18 @@ _UNSEEN = (0.80, 0.87, 0.94)
 
 def maps(assessments: Sequence[Assessment]) -> Plate:
     """Draw the same echoes as each estimator places them, with its trajectory."""
-    clouds = _clouds(assessments)
+    placed = _placed(assessments)
+    clouds = {name: np.vstack([np.zeros((0, 2)), *scans]) for name, scans in placed.items()}
     tracks = {name: path for run in assessments for name, path in run.trajectories.items()}
     positions = np.vstack([path.planar[:, :2] for path in tracks.values()])
     extent = map_extent(np.vstack(list(clouds.values())), positions)
-    figure, panels = map_figure(extent, panels=len(clouds))
+    figure, panels = map_figure(extent, len(clouds))
     for axes, (name, points) in zip(panels, clouds.items(), strict=True):
         draw_points(axes, points)
         draw_track(axes, tracks[name].planar, colour(name), label(name))
         draw_ends(axes, tracks[name].planar, colour(name))
         axes.set_title(label(name), color=colour(name))
-    return Plate("maps", "The map by estimator", _caption(assessments), figure)
+    return Plate("maps", "The map by estimator", _caption(assessments, placed), figure)
 
 
 def occupancy(assessment: Assessment) -> Plate | None:
@@ -65,9 +67,17 @@ def occupancy(assessment: Assessment) -> Plate | None:
     return Plate("occupancy", "Occupancy grid", caption, figure)
 
 
-def _clouds(assessments: Sequence[Assessment]) -> dict[str, Array]:
-    clouds = {DEAD_RECKONING: dead_reckoned_points(assessments[-1].record.estimate)}
-    return clouds | {run.estimator: run.record.points[:, :2] for run in assessments}
+def _placed(assessments: Sequence[Assessment]) -> dict[str, list[Array]]:
+    """Return the points (n, 2) [m] of each scan as each estimator places them."""
+    poses = {
+        run.estimator: [(frame.pose, frame.scan) for frame in run.record.estimate.keyframes]
+        for run in assessments
+    }
+    reckoned = [(scan.odometry, scan) for scan in assessments[-1].record.estimate.first_scans]
+    return {
+        name: [transform_points(pose, scan.points) for pose, scan in scans]
+        for name, scans in ({DEAD_RECKONING: reckoned} | poses).items()
+    }
 
 
 def _occupancy_colours() -> ListedColormap:
@@ -77,7 +87,7 @@ def _occupancy_colours() -> ListedColormap:
     return ListedColormap(np.vstack([[_UNSEEN], 1.0 - shares * (1.0 - dark)]))
 
 
-def _caption(assessments: Sequence[Assessment]) -> str:
+def _caption(assessments: Sequence[Assessment], placed: Mapping[str, list[Array]]) -> str:
     thickness = {run.estimator: run.thickness for run in assessments}
     thickness = {DEAD_RECKONING: assessments[-1].dead_reckoned_thickness} | thickness
     known = ", ".join(
@@ -90,23 +100,13 @@ def _caption(assessments: Sequence[Assessment]) -> str:
     )
     return (
         "The same echoes, placed by each estimator's poses. Walls seen from several places fall"
-        f" on one another where the poses are right.{sharpness}{_agreement(assessments)}"
+        f" on one another where the poses are right.{sharpness}{_agreement(placed)}"
     )
 
 
-def _agreement(assessments: Sequence[Assessment]) -> str:
+def _agreement(placed: Mapping[str, list[Array]]) -> str:
     """Say how many points lie where another scan has one, by estimator."""
-    reckoned = [
-        (scan.odometry, scan.points) for scan in assessments[-1].record.estimate.first_scans
-    ]
-    placed = {DEAD_RECKONING: reckoned} | {
-        run.estimator: [(frame.pose, frame.scan.points) for frame in run.record.estimate.keyframes]
-        for run in assessments
-    }
-    shares = {
-        name: seen_again([transform_points(*scan) for scan in scans])
-        for name, scans in placed.items()
-    }
+    shares = {name: seen_again(scans) for name, scans in placed.items()}
     known = ", ".join(
         f"{label(name)} {100 * share:.0f} %" for name, share in shares.items() if share is not None
     )

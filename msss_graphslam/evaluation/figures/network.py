@@ -11,19 +11,21 @@ from matplotlib.collections import LineCollection
 
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 from msss_graphslam.evaluation.assessment import Assessment
+from msss_graphslam.evaluation.figures.panels import map_extent, map_figure
 from msss_graphslam.evaluation.figures.style import (
     ACCENT,
     MUTED,
     REFUSALS,
     TRUTH,
     Plate,
-    map_extent,
-    map_figure,
     phrase,
 )
 from msss_graphslam.evaluation.figures.trajectories import draw_track
 
 __all__ = ["network", "refusal_colours"]
+
+# Of the legends: how many entries side by side, and a line's height [inch].
+_COLUMNS, _LINE = 2, 0.18
 
 
 def network(assessment: Assessment) -> Plate | None:
@@ -32,7 +34,9 @@ def network(assessment: Assessment) -> Plate | None:
     if len(estimate.keyframes) < 2:
         return None
     nodes = np.array([frame.pose[:2] for frame in estimate.keyframes])
-    figure, (accepted, refused) = map_figure(map_extent(nodes, nodes), panels=2)
+    entries = max(4, 1 + len(refusal_colours(estimate.constraints)))
+    header = 0.5 + _LINE * -(-entries // _COLUMNS)
+    figure, (accepted, refused) = map_figure(map_extent(nodes, nodes), 2, header)
     if assessment.anchored_truth is not None:
         draw_track(accepted, assessment.anchored_truth, TRUTH, "ground truth", ":")
     _draw_accepted(accepted, nodes, estimate.constraints)
@@ -99,7 +103,7 @@ def _legend(axes: Axes, title: str) -> None:
         names,
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=2,
+        ncols=_COLUMNS,
         title=title if names else f"{title}: none",
         alignment="left",
     )

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from msss_graphslam.core.compounding import inverse, transform_points
 from msss_graphslam.core.types import Array
 from msss_graphslam.evaluation.assessment import Assessment
-from msss_graphslam.evaluation.figures.style import Plate, map_extent, map_figure
+from msss_graphslam.evaluation.figures.panels import map_extent, map_figure
+from msss_graphslam.evaluation.figures.style import Plate
 from msss_graphslam.evaluation.figures.trajectories import draw_points
 from msss_graphslam.results.record import example_scan
 
@@ -30,7 +31,7 @@ def one_scan(assessment: Assessment) -> Plate | None:
         "corrected": (frame.scan.points, frame.scan.motion, _AFTER),
     }
     shown = np.vstack([points for points, _, _ in layouts.values()])
-    figure, panels = map_figure(map_extent(shown, frame.scan.motion[:, :2]), panels=3)
+    figure, panels = map_figure(map_extent(shown, frame.scan.motion[:, :2]), 3)
     walls = transform_points(inverse(frame.pose), assessment.record.points[:, :2])
     for axes, (name, (points, motion, shade)) in zip(panels, layouts.items(), strict=True):
         _draw_layout(axes, walls, points, motion, shade)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from msss_graphslam.core.types import Array
@@ -22,8 +21,6 @@ __all__ = [
     "Plate",
     "colour",
     "label",
-    "map_extent",
-    "map_figure",
     "minutes",
     "phrase",
 ]
@@ -52,11 +49,6 @@ RC: dict[Any, Any] = {
     "legend.title_fontsize": 10.0,
     "lines.solid_capstyle": "round",
 }
-_WIDTH = 9.0
-_MOST_COLUMNS = 3
-_HIGHEST = 7.5
-_FLAT = 0.6
-_STRAYS = 0.003
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,45 +64,3 @@ class Plate:
 def minutes(stamps_ns: Array | np.ndarray, start_ns: int) -> Array:
     """Return the time since the start [min]."""
     return np.asarray((np.asarray(stamps_ns) - start_ns) / 60e9)
-
-
-def map_extent(points: Array, positions: Array) -> Array:
-    """Return the corners (2, 2) [m] of a map: all positions, and the points but for a few strays.
-
-    Ghosts far behind the walls would otherwise make every map small.
-    """
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    if len(points):
-        inner = np.quantile(points[:, :2], [_STRAYS, 1.0 - _STRAYS], axis=0)
-        low, high = np.minimum(low, inner[0]), np.maximum(high, inner[1])
-    margin = 0.03 * float((high - low).max()) + 0.5
-    return np.array([low - margin, high + margin])
-
-
-def map_figure(corners: Array, panels: int = 1) -> tuple[Figure, list[Axes]]:
-    """Return a figure for some maps that show the extent with these corners (2, 2) [m]."""
-    width, height = corners[1] - corners[0]
-    aspect = float(np.clip(height / width, 0.15, 1.5))
-    columns = _columns(panels, aspect)
-    rows = -(-panels // columns)
-    row = min((_WIDTH / columns - 0.4) * aspect, _HIGHEST) + 0.6
-    figure = Figure(figsize=(_WIDTH, rows * row + 0.4), layout="compressed")
-    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for axes in grid.flat:
-        axes.set_aspect("equal")
-        axes.set_xlim(*corners[:, 0])
-        axes.set_ylim(*corners[:, 1])
-    for axes in grid[-1]:
-        axes.set_xlabel("x, east [m]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("y, north [m]")
-    for axes in grid.flat[panels:]:
-        axes.set_visible(False)
-    return figure, list(grid.flat[:panels])
-
-
-def _columns(panels: int, aspect: float) -> int:
-    """Return how many maps fit side by side: two flat ones are legible only one a row."""
-    if panels == 2 and aspect < _FLAT:
-        return 1
-    return panels if panels <= _MOST_COLUMNS else 2

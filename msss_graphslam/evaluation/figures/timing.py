@@ -3,9 +3,9 @@
 """Where the time goes."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from msss_graphslam.evaluation.assessment import Assessment
+from msss_graphslam.evaluation.figures.panels import panels, room_for
 from msss_graphslam.evaluation.figures.style import ACCENT, MUTED, Plate, phrase
 
 __all__ = ["timing"]
@@ -17,8 +17,8 @@ def timing(assessment: Assessment) -> Plate | None:
     if not stages:
         return None
     names = [phrase(name) for name in stages]
-    figure = Figure(figsize=(9.0, 1.3 + 0.38 * len(stages)), layout="constrained")
-    totals, calls = figure.subplots(1, 2, sharey=True)
+    height = 0.8 + 0.38 * len(stages)
+    figure, ((totals, calls),) = panels(1, 2, height, left=room_for(names), sharey=True)
     bars = totals.barh(names, [float(np.sum(times)) for times in stages.values()], color=ACCENT)
     totals.bar_label(bars, fmt="%.2f", padding=3, color="#333a42")
     totals.margins(x=0.15)

@@ -10,15 +10,8 @@ from matplotlib.axes import Axes
 from msss_graphslam.core.types import Array, Trajectory
 from msss_graphslam.evaluation.assessment import DEAD_RECKONING, Assessment
 from msss_graphslam.evaluation.errors import start_end_gap
-from msss_graphslam.evaluation.figures.style import (
-    MAP,
-    TRUTH,
-    Plate,
-    colour,
-    label,
-    map_extent,
-    map_figure,
-)
+from msss_graphslam.evaluation.figures.panels import map_extent, map_figure
+from msss_graphslam.evaluation.figures.style import MAP, TRUTH, Plate, colour, label
 
 __all__ = ["trajectories"]
 

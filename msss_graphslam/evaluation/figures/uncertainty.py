@@ -4,10 +4,10 @@
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from msss_graphslam.core.types import Array
 from msss_graphslam.evaluation.assessment import Assessment
+from msss_graphslam.evaluation.figures.panels import panels
 from msss_graphslam.evaluation.figures.style import MUTED, TRUTH, Plate, colour, minutes
 
 __all__ = ["uncertainty"]
@@ -21,8 +21,7 @@ def uncertainty(assessment: Assessment) -> Plate | None:
     covariances = np.array([frame.covariance for frame in frames])
     stamps = np.array([frame.scan.stamp_ns for frame in frames])
     time = minutes(stamps, assessment.record.bag.start_ns)
-    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
-    position, heading = figure.subplots(2, 1, sharex=True)
+    figure, ((position,), (heading,)) = panels(2, 1, 3.7, sharex=True)
     spread = np.sqrt(np.trace(covariances[:, :2, :2], axis1=1, axis2=2))
     _draw_band(position, time, spread, colour(assessment.estimator))
     _draw_band(
