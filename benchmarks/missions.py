@@ -63,7 +63,7 @@ class Accuracy:
     ``jump``, the largest of the pose known online, and ``plain_jump`` without those of a first far
     loop closure. ``turned`` is by how much the whole trajectory is turned [deg]. By ``yaw`` [deg]
     the head is turned against the DVL, and ranges are ``scale`` times as long, as the estimator
-    sees it, both with their stated deviations; NaN where it says nothing of them.
+    sees it, both with their stated deviations, infinite where it says nothing of them.
     """
 
     anchored: float
@@ -74,10 +74,10 @@ class Accuracy:
     jump: float = 0.0
     plain_jump: float = 0.0
     turned: float = 0.0
-    yaw: float = np.nan
-    yaw_deviation: float = np.nan
-    scale: float = np.nan
-    scale_deviation: float = np.nan
+    yaw: float = 0.0
+    yaw_deviation: float = np.inf
+    scale: float = 1.0
+    scale_deviation: float = np.inf
 
 
 def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
