@@ -15,8 +15,9 @@ from msss_graphslam.core.types import Array, SonarCalibration
 
 __all__ = ["OBSERVED", "sonar_calibration", "velocities_of"]
 
-OBSERVED = np.radians(1.0)
-"""A heading of the head that is less well known [rad] is not: the assumed motion doubts more."""
+OBSERVED = np.array([0.02, np.radians(1.0)])
+"""Scale and heading [rad] that are less well known than this are not observed: so well one knows
+the speed of sound and mounts a head anyway. What is assumed of the motion never says as much."""
 
 
 def sonar_calibration(
@@ -37,7 +38,8 @@ def sonar_calibration(
     information = common.information - common.cross.T @ solved
     gradient = common.gradient - solved.T @ equations.gradient
     covariance = np.linalg.pinv(information, hermitian=True)
-    if not 0.0 < covariance[1, 1] < OBSERVED**2:
+    variances = np.diag(covariance)
+    if not ((variances > 0.0) & (variances < OBSERVED**2)).all():
         return None
     scale, yaw = (-covariance @ gradient).tolist()
     return SonarCalibration(yaw, 1.0 + scale, np.asarray(covariance[::-1, ::-1]))
