@@ -21,6 +21,7 @@ DOCUMENTS = [
     "README.md",
     "CONTRIBUTING.md",
     "bags/README.md",
+    "docs/ablation.md",
     "docs/accuracy.md",
     "docs/consistency.md",
     "docs/live.md",
