@@ -47,7 +47,8 @@ def test_a_save_waits_for_what_is_under_way(driver: Driven) -> None:
         send(driver, *piece)
     wait_until(lambda: driver.trigger("save").success, "the save")
     assert len(driver.await_beams(200)) == 200
-    assert "200 beams published" in driver.trigger("save").message
+    told = "200 beams published"
+    wait_until(lambda: told in driver.trigger("save").message, "what the save tells")
 
 
 def test_bytes_without_a_time_get_that_of_the_clock(driver: Driven) -> None:
