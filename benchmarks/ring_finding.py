@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter, reject_ghosts
+from msss_graphslam.core.echoes.echo_extraction import to_decibels
 from msss_graphslam.core.types import Array, Beam
 from msss_graphslam.simulation.ray_casting import Walls
 
@@ -57,9 +58,9 @@ def windows_of(beams: Sequence[Beam]) -> Windows:
 
 
 def _ring_of(beams: Sequence[Beam]) -> float:
-    """Return the ring's range [m] in beams of a Micron, whose codes 0 to 255 are 0 to 80 dB."""
-    codes = np.array([beam.intensities for beam in beams])
-    return ring_range(codes * 80.0 / 255.0, beams[0].ranges)
+    """Return the ring's range [m] in beams of a Micron."""
+    levels = to_decibels(np.array([beam.intensities for beam in beams]), "db80")
+    return ring_range(levels, beams[0].ranges)
 
 
 def ring_range(levels: Array, ranges: Array) -> float:

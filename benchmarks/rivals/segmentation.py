@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.tables import Table
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter
+from msss_graphslam.core.echoes.echo_extraction import to_decibels
 from msss_graphslam.core.scans.scan_generator import BLOCK
 from msss_graphslam.core.types import Array, Beam, Scan, Trajectory
 from msss_graphslam.evaluation.errors import interpolate
@@ -59,7 +60,7 @@ def detections(
     used = [beams[int(stamp)] for scan in scans for stamp in scan.beam_stamps_ns]
     walls = _walls(used, truth, world)
     yield _ours(scans, used, walls, configuration)
-    levels = np.array([beam.intensities for beam in used]) * (80.0 / 255.0)
+    levels = to_decibels(np.array([beam.intensities for beam in used]), "db80")
     ranges = used[0].ranges
     levels[:, ranges < BLANKING] = 0.0
     for threshold in THRESHOLDS:
