@@ -101,7 +101,7 @@ def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
 def _calibration(found: SonarCalibration | None) -> dict[str, float]:
     if found is None:
         return {}
-    yaw, scale = np.sqrt(np.diag(found.covariance)).tolist()
+    yaw, scale = found.deviations
     return {
         "yaw": float(np.degrees(found.yaw)),
         "yaw_deviation": float(np.degrees(yaw)),

@@ -233,6 +233,12 @@ class SonarCalibration:
     scale: float
     covariance: Array
 
+    @property
+    def deviations(self) -> tuple[float, float]:
+        """The standard deviations of yaw [rad] and scale."""
+        yaw, scale = np.sqrt(np.diag(self.covariance)).tolist()
+        return yaw, scale
+
 
 @dataclass(frozen=True, slots=True)
 class TwistError:

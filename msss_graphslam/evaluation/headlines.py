@@ -54,7 +54,7 @@ def headlines(assessments: Sequence[Assessment]) -> list[Headline]:
 def _calibration(found: SonarCalibration | None) -> list[Headline]:
     if found is None:
         return []
-    yaw, scale = np.sqrt(np.diag(found.covariance)).tolist()
+    yaw, scale = found.deviations
     note = (
         f"\u00b1 {np.degrees(yaw):.1f}\u00b0; ranges \u00d7 {found.scale:.3f} \u00b1 {scale:.3f}"
     )

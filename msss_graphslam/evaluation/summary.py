@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from msss_graphslam.core.types import SonarCalibration
 from msss_graphslam.evaluation.assessment import Assessment
 from msss_graphslam.evaluation.errors import PoseErrors, Statistics, start_end_gap
@@ -50,7 +48,7 @@ def summarise(assessment: Assessment) -> dict[str, Any]:
 
 
 def _calibration_table(calibration: SonarCalibration) -> dict[str, float]:
-    yaw, scale = np.sqrt(np.diag(calibration.covariance)).tolist()
+    yaw, scale = calibration.deviations
     figures = {
         "mount_yaw_rad": calibration.yaw,
         "mount_yaw_deviation_rad": yaw,

@@ -62,9 +62,10 @@ def test_the_deviations_are_those_of_what_the_velocity_sensor_doubts() -> None:
     assert worse is not None
     independent = 0.001 / np.sqrt((VELOCITIES**2).sum())
     # Errors that last tell less than independent ones.
-    assert np.sqrt(found.covariance[0, 0]) > 0.9 * independent
-    assert np.sqrt(worse.covariance[0, 0]) > 1.2 * np.sqrt(found.covariance[0, 0])
-    np.testing.assert_allclose(found.covariance[0, 0], found.covariance[1, 1], rtol=1e-6)
+    (yaw, scale), (less_sure, _) = found.deviations, worse.deviations
+    assert yaw > 0.9 * independent
+    assert less_sure > 1.2 * yaw
+    assert yaw == pytest.approx(scale, rel=5e-7)
 
 
 def test_it_is_told_only_where_both_are_known_well() -> None:
@@ -73,7 +74,7 @@ def test_it_is_told_only_where_both_are_known_well() -> None:
     known = [entry for entry in found if entry is not None]
     assert 0 < len(known) < len(found)
     assert found[: len(known)] == known
-    yaw, scale = np.sqrt([np.diag(entry.covariance) for entry in known]).max(axis=0)
+    yaw, scale = np.max([entry.deviations for entry in known], axis=0)
     assert yaw < OBSERVED[1]
     assert scale < OBSERVED[0]
     assert max(yaw / OBSERVED[1], scale / OBSERVED[0]) > 0.5
