@@ -20,7 +20,7 @@ from benchmarks.trials import Trial, results
 from msss_graphslam import __version__
 from msss_graphslam.cli.console import Console
 
-__all__ = ["Campaign", "Provenance", "call", "positive"]
+__all__ = ["Campaign", "Provenance", "add_flights", "call", "flights_in", "positive"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,11 @@ class Provenance:
     command: str
     version: str
     sources: str
+
+    @classmethod
+    def of(cls, command: str, checksum: str) -> "Provenance":
+        """Return that of what this version's sources of a ``fingerprint`` make."""
+        return cls(command, __version__, checksum[:12])
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +51,7 @@ class Campaign:
         options.results.mkdir(parents=True, exist_ok=True)
         return cls(
             ResultCache(options.results, fingerprint(sources())),
-            FlightCache(options.flights, fingerprint(simulation_sources())),
+            flights_in(options.flights),
             options.jobs,
         )
 
@@ -62,16 +67,11 @@ class Campaign:
             default=Path("reproduction"),
             help="folder of single results; those made by other sources are made anew",
         )
-        parser.add_argument(
-            "--flights",
-            type=Path,
-            default=Path("reproduction", "flights"),
-            help="folder of simulated missions; those of another simulator are made anew",
-        )
+        add_flights(parser)
 
     def provenance(self, command: str) -> Provenance:
         """Return what a page has to say of its figures' origin."""
-        return Provenance(command, __version__, self.results.fingerprint[:12])
+        return Provenance.of(command, self.results.fingerprint)
 
     def complete(self, planned: Sequence[Trial]) -> dict[Trial, Accuracy]:
         """Run the trials of which the result is missing, and return the results of all."""
@@ -91,6 +91,21 @@ class Campaign:
                 done, cost = done + count, cost + seconds
                 progress(done / total, f"{mission}, {done} of {total}")
         console.remark(f"{len(missing)} runs in {cost / 60.0:.1f} minutes of CPU time")
+
+
+def add_flights(parser: ArgumentParser) -> None:
+    """Add the option that says where simulated missions are kept."""
+    parser.add_argument(
+        "--flights",
+        type=Path,
+        default=Path("reproduction", "flights"),
+        help="folder of simulated missions; those of another simulator are made anew",
+    )
+
+
+def flights_in(folder: Path) -> FlightCache:
+    """Return the simulated missions kept in a folder, of this simulator alone."""
+    return FlightCache(folder, fingerprint(simulation_sources()))
 
 
 def call(main: Callable[[], None]) -> None:

@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import honesty
-from benchmarks.campaign import Provenance, call, positive
+from benchmarks.campaign import Provenance, call, flights_in, positive
 from benchmarks.flights import FlightCache
 from benchmarks.honesty import KINDS, STEPS, Statements, statements
 from benchmarks.missions import Mission
 from benchmarks.page import rendered
-from benchmarks.result_cache import fingerprint, simulation_sources, sources
+from benchmarks.result_cache import fingerprint, sources
 from benchmarks.tables import Table
-from msss_graphslam import __version__
 from msss_graphslam.cli.console import Console
 from msss_graphslam.core.types import Array
 from msss_graphslam.evaluation.covariance_consistency import StepConsistency, step_consistency
@@ -41,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         world: _complete(world, count, options.folder, used) for world, count in seeds.items()
     }
     command = f"python -m benchmarks.consistency --seeds {options.seeds} --paper-seeds "
-    provenance = Provenance(f"{command}{options.paper_seeds}", __version__, used[:12])
+    provenance = Provenance.of(f"{command}{options.paper_seeds}", used)
     options.page.write_text(consistency_page(results, provenance), encoding="utf-8")
 
 
@@ -87,7 +86,7 @@ def _band(missions: int) -> str:
 
 
 def _complete(world: str, seeds: int, folder: Path, used: str) -> list[Statements]:
-    flights = FlightCache(folder / "flights", fingerprint(simulation_sources()))
+    flights = flights_in(folder / "flights")
     console, results = Console(), []
     with console.progress() as progress:
         for seed in range(1, seeds + 1):

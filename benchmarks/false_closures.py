@@ -10,13 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.campaign import Provenance, call
+from benchmarks.campaign import Provenance, add_flights, call, flights_in
 from benchmarks.false_injection import FalseClosures, FalseKind
 from benchmarks.flights import Flight, FlightCache
 from benchmarks.missions import Mission
-from benchmarks.result_cache import fingerprint, simulation_sources, sources
+from benchmarks.result_cache import fingerprint, sources
 from benchmarks.robustness_page import Trial, robustness_page
-from msss_graphslam import __version__
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.graph.front_end import FrontEnd
@@ -49,16 +48,11 @@ class Flown:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the missions without and with false closures, and write the page."""
     parser = ArgumentParser(prog="python -m benchmarks.false_closures", description=__doc__)
-    parser.add_argument(
-        "--flights",
-        type=Path,
-        default=Path("reproduction", "flights"),
-        help="folder of simulated missions; those of another simulator are made anew",
-    )
+    add_flights(parser)
     parser.add_argument("--page", type=Path, default=Path("docs", "robustness.md"))
     options = parser.parse_args(arguments)
-    flights = FlightCache(options.flights, fingerprint(simulation_sources()))
-    provenance = Provenance(parser.prog, __version__, fingerprint(sources())[:12])
+    flights = flights_in(options.flights)
+    provenance = Provenance.of(parser.prog, fingerprint(sources()))
     trials = _trials(flights)
     options.page.write_text(robustness_page(trials, provenance), encoding="utf-8")
 

@@ -9,14 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.campaign import Provenance, call
-from benchmarks.flights import Flight, FlightCache
+from benchmarks.campaign import Provenance, add_flights, call, flights_in
+from benchmarks.flights import Flight
 from benchmarks.missions import Mission
 from benchmarks.page import rendered
-from benchmarks.result_cache import fingerprint, simulation_sources, sources
+from benchmarks.result_cache import fingerprint, sources
 from benchmarks.ring_finding import WINDOW, Windows, nearest_wall, windows_of
 from benchmarks.tables import Table
-from msss_graphslam import __version__
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import wrap
@@ -57,15 +56,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "recordings", nargs="*", type=Path, help="bags of real heads, made by `msss convert`"
     )
-    parser.add_argument(
-        "--flights",
-        type=Path,
-        default=Path("reproduction", "flights"),
-        help="folder of simulated missions; those of another simulator are made anew",
-    )
+    add_flights(parser)
     parser.add_argument("--page", type=Path, default=Path("docs", "sidelobe_ring.md"))
     options = parser.parse_args(arguments)
-    flights = FlightCache(options.flights, fingerprint(simulation_sources()))
+    flights = flights_in(options.flights)
     simulated, recorded, total = [], [], len(MISSIONS) + len(options.recordings)
     with Console().progress() as progress:
         for number, mission in enumerate(MISSIONS):
@@ -75,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             progress(number / total, path.name)
             recorded.append(recorded_row(path))
     command = " ".join([parser.prog, *(path.name for path in options.recordings)])
-    provenance = Provenance(command, __version__, fingerprint(sources())[:12])
+    provenance = Provenance.of(command, fingerprint(sources()))
     options.page.write_text(ring_page(simulated, recorded, provenance), encoding="utf-8")
 
 
