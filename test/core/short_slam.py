@@ -3,26 +3,19 @@
 """Front ends that have seen the first scans of a short simulated mission."""
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
-from small_mission import estimated, recorded
+from small_mission import recorded, scans
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.graph.graph_slam import GraphSlam
 from msss_graphslam.core.recipes import ESTIMATORS, Recipe
-from msss_graphslam.core.types import Array, Constraint, Scan
+from msss_graphslam.core.types import Array, Constraint
 
 CONFIGURATION = Configuration()
 FULL, CHEN = ESTIMATORS["full"], ESTIMATORS["chen2015"]
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    """The mission's scans as dead reckoning lays them out."""
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def true_poses() -> Array:

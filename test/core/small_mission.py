@@ -20,6 +20,7 @@ from msss_graphslam.core.types import (
     Estimate,
     Inertial,
     Measurement,
+    Scan,
     Stamps,
     Trajectory,
 )
@@ -100,6 +101,12 @@ def run(
 def estimated(estimator: str, seed: int = 1) -> Estimate:
     """The estimate of a whole ``recorded`` mission."""
     return run(recorded(seed).measurements, estimator)[0]
+
+
+@cache
+def scans() -> tuple[Scan, ...]:
+    """The mission's scans as dead reckoning lays them out."""
+    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def position_errors(estimate: Trajectory, truth: Trajectory) -> Array:

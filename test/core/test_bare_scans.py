@@ -1,21 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-from functools import cache
-
 import numpy as np
 import pytest
-from small_mission import estimated
+from small_mission import scans
 
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
-from msss_graphslam.core.types import Scan
 
 LAYOUT = ("motion", "motion_covariances", "points", "covariances")
 MEASURED = ("beam_stamps_ns", "reckoned", "beam_index", "body_points", "body_covariances")
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def test_a_bare_scan_laid_out_is_the_same_to_the_last_bit() -> None:

@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
 import pickle
-from functools import cache
 
 import numpy as np
 import pytest
-from small_mission import estimated
+from small_mission import scans
 
 from msss_graphslam.core.scans import corrected_keyframes as module
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
@@ -16,11 +15,6 @@ from msss_graphslam.core.types import Array, Keyframe, Scan, TwistError
 
 ERROR = TwistError(np.array([0.03, -0.02, 0.01]), np.diag([1e-5, 2e-5, 1e-7]))
 ARRAYS = ("motion", "motion_covariances", "points", "covariances", "reckoned")
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def bare_scans() -> list[Scan]:

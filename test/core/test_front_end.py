@@ -2,24 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of the front end changed on the way, and what it keeps of earlier scans."""
 
-from functools import cache
-
 import numpy as np
 import pytest
-from small_mission import estimated
+from small_mission import scans
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.graph import known_places
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.types import Constraint, ConstraintKind, GraphPoses, Scan
+from msss_graphslam.core.types import Constraint, ConstraintKind, GraphPoses
 
 STRICT = Configuration().with_values({"association.mahalanobis_threshold": 0.0})
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def loops(*, strict_from: int | None) -> list[Constraint]:

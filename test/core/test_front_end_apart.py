@@ -4,7 +4,8 @@
 
 import numpy as np
 import pytest
-from short_slam import CHEN, CONFIGURATION, FULL, kinds, pose_errors, scans, slam_of
+from short_slam import CHEN, CONFIGURATION, FULL, kinds, pose_errors, slam_of
+from small_mission import scans
 
 from msss_graphslam.core.compounding import between
 from msss_graphslam.core.graph.back_end import BackEnd

@@ -4,8 +4,8 @@
 
 import numpy as np
 import pytest
-from short_slam import CHEN, CONFIGURATION, FULL, scans, slam_of, true_poses
-from small_mission import recorded
+from short_slam import CHEN, CONFIGURATION, FULL, slam_of, true_poses
+from small_mission import recorded, scans
 
 from msss_graphslam.core.compounding import between, compose
 from msss_graphslam.core.graph.front_end import FrontEnd

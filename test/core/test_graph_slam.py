@@ -4,40 +4,29 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
-from short_slam import CHEN, CONFIGURATION, FULL, kinds, scans, slam_of, true_poses
-from small_mission import estimated
+from short_slam import CHEN, CONFIGURATION, FULL, kinds, slam_of, true_poses
+from small_mission import estimated, scans
+from stub_matcher import StubMatcher
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import between, compose
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 
-class Refusing:
+class Refusing(StubMatcher):
     """A matcher that never finds anything."""
 
     def __init__(self, _: Matching) -> None:
-        self.asked = 0
+        pass
 
-    def prepare(self, scan: Scan) -> Scan:
-        return scan
-
-    def match(
-        self,
-        reference: Any,  # noqa: ARG002
-        current: Any,  # noqa: ARG002
-        initial: Array,
-        spread: Array,
-        start: Array | None = None,  # noqa: ARG002
-    ) -> MatchResult:
-        self.asked += 1
-        return MatchResult(initial, spread, "too_little_overlap")
+    def answer(self, initial: Array, covariance: Array, _: Array | None) -> MatchResult:
+        return MatchResult(initial, covariance, "too_little_overlap")
 
 
 def test_the_first_scan_hangs_on_nothing() -> None:

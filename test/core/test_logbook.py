@@ -1,12 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from estimate_checks import assert_sound
-from small_mission import estimated
+from small_mission import estimated, scans
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.graph.graph_slam import GraphSlam
@@ -16,11 +15,6 @@ from msss_graphslam.core.types import Array, Estimate, Scan
 
 CONFIGURATION = Configuration()
 EVERY_ESTIMATOR = pytest.mark.parametrize("estimator", list(ESTIMATORS))
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def dropped(scan: Scan) -> Scan:

@@ -4,41 +4,31 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 import pytest
 from small_mission import estimated
+from stub_matcher import StubMatcher
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between
 from msss_graphslam.core.graph.front_end import FrontEnd
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.recipes import ESTIMATORS
-from msss_graphslam.core.types import Array, ConstraintKind, Scan
+from msss_graphslam.core.types import Array, ConstraintKind
 
 FULL = ESTIMATORS["full"]
 ASTRAY = "too_little_overlap"
 
 
 @dataclass
-class Scripted:
+class Scripted(StubMatcher):
     """A matcher whose answers are (shift along x [m], overlap, refusal), one after another."""
 
     answers: Sequence[tuple[float, float, str]]
     starts: list[Array | None] = field(default_factory=list)
 
-    def prepare(self, scan: Scan) -> Scan:
-        return scan
-
-    def match(
-        self,
-        reference: Any,  # noqa: ARG002
-        current: Any,  # noqa: ARG002
-        initial: Array,
-        spread: Array,  # noqa: ARG002
-        start: Array | None = None,
-    ) -> MatchResult:
+    def answer(self, initial: Array, _: Array, start: Array | None) -> MatchResult:
         shift, overlap, refusal = self.answers[min(len(self.starts), len(self.answers) - 1)]
         self.starts.append(start)
         pose = initial + np.array([shift, 0.0, 0.0])

@@ -3,7 +3,8 @@
 """Refinement on the scans of a short simulated mission."""
 
 import numpy as np
-from short_slam import CHEN, CONFIGURATION, FULL, Slam, pose_errors, scans, slam_of
+from short_slam import CHEN, CONFIGURATION, FULL, Slam, pose_errors, slam_of
+from small_mission import scans
 
 from msss_graphslam.core.graph.refinement import Refined, refine, whole_graph
 from msss_graphslam.core.matching.matchers import LineMatcher

@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_mission import estimated
+from small_mission import scans
 
 from msss_graphslam.core.compounding import between, compose, transform_points
 from msss_graphslam.core.scans.motion_feedback import offset_motion
@@ -16,12 +15,6 @@ from msss_graphslam.core.types import Array, Scan, TwistError
 
 ERROR = TwistError(np.array([0.03, -0.02, 0.01]), np.diag([1e-5, 2e-5, 1e-7]))
 SOLVERS = pytest.mark.parametrize("solver", [closed_form, nelder_mead])
-
-
-@cache
-def scans() -> tuple[Scan, ...]:
-    """As dead reckoning lays them out."""
-    return tuple(estimated("dead_reckoning").first_scans)
 
 
 def reckoned() -> Array:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from stub_matcher import StubMatcher
 
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.matching.wide_search import AMBIGUOUS, BASIN, MOST, match_widely
@@ -25,7 +26,7 @@ def guessed(along: float, across: float = 0.1, bearing: float = 0.0) -> Array:
     return spread
 
 
-class Places:
+class Places(StubMatcher):
     """A matcher that finds one of several places (n, 3): the nearest, if it is near enough.
 
     ``overlaps`` (n,) are the shares of points that fit there. Nothing fits elsewhere.
@@ -39,19 +40,9 @@ class Places:
         self._covariance = covariance
         self.asked: list[tuple[Array, Array]] = []
 
-    def prepare(self, scan: Any) -> Any:
-        return scan
-
-    def match(
-        self,
-        reference: Any,  # noqa: ARG002
-        current: Any,  # noqa: ARG002
-        initial: Array,
-        initial_covariance: Array,
-        start: Array | None = None,
-    ) -> MatchResult:
+    def answer(self, initial: Array, covariance: Array, start: Array | None) -> MatchResult:
         begin = initial if start is None else start
-        self.asked.append((begin, initial_covariance))
+        self.asked.append((begin, covariance))
         distances = np.hypot(*(self._places - begin)[:, :2].T)
         nearest = int(distances.argmin())
         if distances[nearest] > 0.6 * BASIN:
