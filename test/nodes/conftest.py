@@ -7,11 +7,22 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 from nodes import build_tf2_msgs
+
+
+@pytest.fixture
+def at() -> Iterator[Any]:
+    """Give a ROS domain of the test's own."""
+    from nodes.processes import domain
+
+    with domain() as found:
+        yield found
 
 
 @pytest.fixture(scope="session")

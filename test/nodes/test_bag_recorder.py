@@ -4,11 +4,10 @@
 
 import re
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from nodes.processes import Domain, TestNode, domain, wait_until
+from nodes.processes import Domain, TestNode, wait_until
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sample_bags import sensor_messages
 
@@ -21,12 +20,6 @@ from msss_graphslam.ros.qos import profile_of
 CLOCK = "rosgraph_msgs/msg/Clock"
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture
-def at() -> Iterator[Domain]:
-    with domain() as found:
-        yield found
 
 
 def publish(source: TestNode, beams: int = 50) -> dict[str, list[bytes]]:

@@ -3,7 +3,6 @@
 """Front end and back end as real processes: the links, the files, what comes of a kill."""
 
 import time
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from nodes.linked_nodes import scans_of
-from nodes.processes import Domain, TestNode, domain, wait_until
+from nodes.processes import Domain, TestNode, wait_until
 from promised_files import RUN_FILES
 from rclpy.duration import Duration
 from small_mission import estimated, recorded
@@ -26,12 +25,6 @@ pytestmark = pytest.mark.slow
 
 TRIGGER = message_class("std_srvs/srv/Trigger")
 GET_MAP = message_class("nav_msgs/srv/GetMap")
-
-
-@pytest.fixture
-def at() -> Iterator[Domain]:
-    with domain() as found:
-        yield found
 
 
 @cache

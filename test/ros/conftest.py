@@ -74,3 +74,11 @@ def started() -> Iterator[Callable[..., Graph]]:
 @pytest.fixture
 def graph(started: Callable[..., Graph]) -> Graph:
     return started()
+
+
+@pytest.fixture
+def bench(graph: Graph) -> Any:
+    """Return a ``listening_node.Bench``."""
+    from listening_node import Bench
+
+    return Bench(graph)
