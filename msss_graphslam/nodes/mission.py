@@ -4,7 +4,6 @@
 
 from collections import Counter
 from contextlib import nullcontext
-from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from msss_graphslam.core.beam_log import BeamLog
 from msss_graphslam.core.graph.guarded_back_end import GuardedBackEnd
 from msss_graphslam.core.logbook import Logbook
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import (
     Array,
     Constraint,
@@ -25,6 +23,7 @@ from msss_graphslam.core.types import (
     Trajectory,
 )
 from msss_graphslam.messages.link_decoding import StampedPose
+from msss_graphslam.nodes.mission_scans import brought_together
 
 __all__ = ["Mission"]
 
@@ -109,11 +108,10 @@ class Mission:
 
     def answer(self) -> GraphPoses:
         """Return what the front end is told."""
-        odometry = [report.odometry for report in self._reports]
         return GraphPoses(
             stamps_ns=self._stamps,
             poses=self.poses,
-            odometry=np.array(odometry).reshape(-1, 3),
+            odometry=np.array([report.odometry for report in self._reports]).reshape(-1, 3),
             covariances=np.array(self._covariances).reshape(-1, 3, 3),
         )
 
@@ -129,7 +127,7 @@ class Mission:
     def logbook(self) -> Logbook:
         """Return a Logbook of its own: what is done to it does not touch the running graph."""
         logbook = Logbook(self._configuration, self._recipe, self._stage)
-        for scan in self._ordered_scans():
+        for scan in brought_together(self._scans, self._reports):
             logbook.add_scan(scan)
         for published in self._online:
             logbook.add_online(published.stamp_ns, published.pose)
@@ -141,7 +139,7 @@ class Mission:
     def trajectory(self) -> Trajectory:
         """Return the corrected trajectory as it stands."""
         beams = BeamLog()
-        scans = self._ordered_scans()
+        scans = brought_together(self._scans, self._reports)
         for scan in scans:
             beams.add_scan(scan)
         error = np.zeros(3)
@@ -152,8 +150,7 @@ class Mission:
 
     def keyframes(self) -> list[Keyframe]:
         """Return the keyframes with their scans as the trajectory lays them out."""
-        scans = self.logbook().keyframe_scans()
-        rows = zip(scans, self.poses, self._covariances, strict=True)
+        rows = zip(self.logbook().keyframe_scans(), self.poses, self._covariances, strict=True)
         return [Keyframe(*row) for row in rows]
 
     @property
@@ -194,37 +191,9 @@ class Mission:
         return ""
 
     def _new_back_end(self) -> GuardedBackEnd:
-        guards = self._recipe.goes_beyond
-        return GuardedBackEnd(self._configuration.back_end, guards=guards)
+        return GuardedBackEnd(self._configuration.back_end, guards=self._recipe.goes_beyond)
 
     def _rebuild(self) -> None:
         self._back_end = self._new_back_end()
         for report in self._reports:
             self._back_end.take(report.pose, report.constraints)
-
-    def _ordered_scans(self) -> list[Scan]:
-        """Return the scans by stamp; those of the keyframes alone are usable, and all there."""
-        reports = {report.stamp_ns: report for report in self._reports}
-        scans = {stamp: _silent_scan(report) for stamp, report in reports.items()}
-        for stamp, scan in self._scans.items():
-            scans[stamp] = _with_use(scan, usable=stamp in reports)
-        return [scans[stamp] for stamp in sorted(scans)]
-
-
-def _with_use(scan: Scan, *, usable: bool) -> Scan:
-    return scan if scan.usable == usable else replace(scan, usable=usable)
-
-
-def _silent_scan(report: KeyframeReport) -> Scan:
-    """Return the scan of a keyframe of which only the pose is left: one beam without echoes."""
-    reckoned = np.zeros((2, 6))
-    reckoned[:, [0, 1, 5]] = report.odometry
-    return reckoned_scan(
-        beam_stamps_ns=np.array([report.stamp_ns], dtype=np.int64),
-        end_stamp_ns=report.stamp_ns,
-        reckoned=reckoned,
-        twist_covariance=np.zeros((3, 3)),
-        beam_index=np.zeros(0, dtype=np.intp),
-        body_points=np.zeros((0, 2)),
-        body_covariances=np.zeros((0, 2, 2)),
-    )

@@ -15,7 +15,8 @@ from msss_graphslam.core.types import Beam, Inertial, Stamps
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages import topics
 from msss_graphslam.recordings.damage import Damage
-from msss_graphslam.recordings.reader import RecordedTopic, Recording, open_recording
+from msss_graphslam.recordings.reader import Recording, open_recording
+from msss_graphslam.recordings.recorded_topics import RecordedTopic
 from msss_graphslam.recordings.sonar_settings import SonarObserver, SonarSettings
 
 __all__ = ["Gap", "InspectionReport", "Lack", "TopicReport", "inspect", "lacks"]

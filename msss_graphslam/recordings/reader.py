@@ -4,7 +4,6 @@
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +17,7 @@ from msss_graphslam.recordings.damage import Damage
 from msss_graphslam.recordings.files import mcap_files
 from msss_graphslam.recordings.mcap_reading import McapContent, RawMessage, merge
 from msss_graphslam.recordings.mounting import Mounting
+from msss_graphslam.recordings.recorded_topics import RecordedTopic, recorded_topics
 from msss_graphslam.recordings.sensors import sensor_sources, sonar_source, truth_source
 from msss_graphslam.recordings.source import AnySource, Given
 from msss_graphslam.recordings.typestore import UndecodableError, decode
@@ -25,16 +25,7 @@ from msss_graphslam.recordings.typestore import UndecodableError, decode
 _LOG_DELAY_NS = 2_000_000_000
 _SETTLING_NS = 60_000_000_000
 
-__all__ = ["RecordedTopic", "Recording", "open_recording"]
-
-
-@dataclass(frozen=True, slots=True)
-class RecordedTopic:
-    """One topic of a recording."""
-
-    name: str
-    type_name: str
-    count: int
+__all__ = ["Recording", "open_recording"]
 
 
 def open_recording(path: Path | str) -> "Recording":
@@ -72,7 +63,7 @@ class Recording:
 
     def __init__(self, path: Path, contents: list[McapContent]) -> None:
         self.path = path
-        self.topics = _topics(contents)
+        self.topics = recorded_topics(contents)
         self.damage = Damage.total(content.damage for content in contents)
         blocks = [block for content in contents for block in content.blocks]
         self.start_ns = min((block.first_ns for block in blocks), default=0)
@@ -190,15 +181,3 @@ class Recording:
                 f"{self.path}: {recorded.name} is of type {recorded.type_name}, must be"
                 f" {topic.type_name} with {content} a message; make the bag by `msss convert`"
             )
-
-
-def _topics(contents: list[McapContent]) -> dict[str, RecordedTopic]:
-    counts: Counter[str] = Counter()
-    types: dict[str, str] = {}
-    for content in contents:
-        for identifier, count in content.counts.items():
-            channel = content.channels[identifier]
-            schema = content.schemas.get(channel.schema_id)
-            counts[channel.topic] += count
-            types[channel.topic] = schema.name if schema else "unknown"
-    return {name: RecordedTopic(name, types[name], counts[name]) for name in sorted(counts)}

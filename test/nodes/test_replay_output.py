@@ -6,7 +6,7 @@ import pytest
 from nodes.processes import TestNode, domain
 
 from msss_graphslam.nodes.replay.output import Output
-from msss_graphslam.recordings.reader import RecordedTopic
+from msss_graphslam.recordings.recorded_topics import RecordedTopic
 
 
 @pytest.mark.parametrize(

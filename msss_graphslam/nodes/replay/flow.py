@@ -7,25 +7,15 @@ from collections.abc import Callable, Sequence
 
 from rclpy.node import Node
 
-from msss_graphslam.messages import topics
 from msss_graphslam.nodes.names import DRIVER
 from msss_graphslam.nodes.replay.audience import Audience
-from msss_graphslam.nodes.replay.follower import Follower, GraphFollower
+from msss_graphslam.nodes.replay.follower import Follower
+from msss_graphslam.nodes.replay.followers import Followers
 from msss_graphslam.nodes.replay.output import Output
-from msss_graphslam.nodes.replay.receipt import receipt_ns
 from msss_graphslam.nodes.trigger import Spin
-from msss_graphslam.recordings.mcap_reading import RawMessage
 
 __all__ = ["Flow"]
 
-_SENSORS = (topics.SONAR_PING, topics.IMU, topics.PRESSURE, topics.DVL)
-# With the batch that is sent before the next look less than half a second, after which dead
-# reckoning would take beams that came first for a sign that the IMU has gone.
-_RECKONING_LIMIT_NS = 300_000_000
-# Much less than the beams that dead reckoning keeps for a scan generation that is started again.
-_SCANNING_LIMIT_NS = 5_000_000_000
-# Beams that come late must not look like a sonar that is silent: much less than its patience.
-_DRIVING_LIMIT_NS = 1_000_000_000
 _STALL = 5.0
 _TELL_EVERY = 5.0
 _DRIVER_WANTED = (
@@ -68,28 +58,9 @@ class Flow:
         self._looked = 0.0
         self._members: frozenset[bytes] = frozenset()
         self._is_impatient = False
-        note = self._note_news
-        self._reckoning = Follower(node, topics.SETTLED_ODOMETRY, _RECKONING_LIMIT_NS, note)
-        self._scanning = Follower(node, topics.SCAN_PROGRESS, _SCANNING_LIMIT_NS, note)
-        self._driving = Follower(node, topics.RAW_TAKEN, _DRIVING_LIMIT_NS, note)
-        self._graph = GraphFollower(node, note)
-
-    def restart(self) -> None:
-        """Forget what was sent: the next message is the first."""
-        self._driving.restart()
-        self._reckoning.restart()
-        self._scanning.restart()
-        self._graph.restart()
-
-    def sent(self, raw: RawMessage) -> None:
-        """Note what was just published."""
-        topic = topics.find(raw.channel.topic)
-        if topic in _SENSORS:
-            self._reckoning.sent(raw)
-        if topic is topics.SONAR_RAW:
-            self._driving.sent_at(raw.log_ns, receipt_ns(raw))
-        if topic is topics.SONAR_PING:
-            self._scanning.sent(raw)
+        self._followers = Followers(node, self._note_news)
+        self.sent = self._followers.sent
+        self.restart = self._followers.restart
 
     def gather(self, patience: float | None = None) -> None:
         """Wait until all nodes listen; with ``patience`` [s] go on without those that do not."""
@@ -119,9 +90,8 @@ class Flow:
         """Wait until everything has arrived and those that tell have worked it off."""
         if not self._goes_on_until(lambda: self._output.all_acknowledged(_ACKNOWLEDGEMENT)):
             self._log.warning("not everything that was sent has been acknowledged")
-        self._await_end(self._driving, "the driver")
-        self._await_end(self._reckoning, "dead reckoning")
-        self._await_end(self._scanning, "scan generation")
+        for name, follower in self._followers.told.items():
+            self._await_end(follower, name)
         news = -1
         while news != self._news:
             news = self._news
@@ -137,10 +107,9 @@ class Flow:
         self._is_impatient = False
 
     def _is_free(self) -> bool:
-        followed = (self._driving, self._reckoning, self._scanning, self._graph)
-        if any(follower.is_behind for follower in followed):
+        if self._followers.is_one_behind:
             return False
-        if self._reckoning.is_heard:
+        if self._followers.is_reckoning_heard:
             return True
         return not self._output.is_full or self._is_acknowledged()
 
@@ -198,19 +167,14 @@ class Flow:
                 return
 
     def _give_up_those_behind(self) -> None:
-        for follower in (self._driving, self._reckoning, self._scanning):
-            if not follower.is_through:
-                follower.give_up()
-        self._graph.restart()
+        self._followers.give_up_those_behind()
         self._release()
         self._is_impatient = True
 
     def _release(self) -> None:
         """Send on, whatever those who listen have told so far."""
         self._members = self._audience.members()
-        self._driving.release()
-        self._reckoning.release()
-        self._scanning.release()
+        self._followers.release()
 
     def _is_renewed(self) -> bool:
         """Whether subscriptions listen that did not at the last progress."""

@@ -18,7 +18,7 @@ from msss_graphslam.messages.topics import Topic
 from msss_graphslam.nodes.replay.receipt import with_receipt
 from msss_graphslam.nodes.replay.selection import relative_name
 from msss_graphslam.recordings.mcap_reading import RawMessage
-from msss_graphslam.recordings.reader import RecordedTopic
+from msss_graphslam.recordings.recorded_topics import RecordedTopic
 from msss_graphslam.ros.messages import message_class
 from msss_graphslam.ros.qos import DEEP, name_of, profile_of
 

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages import topics
 from msss_graphslam.messages.topics import Topic
-from msss_graphslam.recordings.reader import RecordedTopic, Recording
+from msss_graphslam.recordings.reader import Recording
+from msss_graphslam.recordings.recorded_topics import RecordedTopic
 
 __all__ = ["relative_name", "select"]
 
