@@ -8,16 +8,11 @@ from copy import copy
 from typing import Self
 
 from msss_graphslam.config.groups import DeadReckoning as DeadReckoningConfig
-from msss_graphslam.core.compounding import wrap_angle
 from msss_graphslam.core.reckoning.alignment import align
-from msss_graphslam.core.reckoning.innovation_gate import InnovationGate
+from msss_graphslam.core.reckoning.gated_updates import GatedUpdates
 from msss_graphslam.core.reckoning.kalman_filter import (
-    ATTITUDE,
     COMPASS_BIAS,
-    VELOCITY_ERROR,
-    YAW,
     KalmanFilter,
-    Z,
 )
 from msss_graphslam.core.reckoning.reckoned_odometry import odometry_of, yaw_rate_variance
 from msss_graphslam.core.types import (
@@ -44,7 +39,7 @@ class DeadReckoning:
     def __init__(self, config: DeadReckoningConfig, refused: Counter[str]) -> None:
         self._config = config
         self._refused = refused
-        self._gate = InnovationGate(config, refused)
+        self._updates = GatedUpdates(config, refused)
         self._pending: list[Measurement] = []
         self._filter: KalmanFilter | None = None
         self._stamp_ns = 0
@@ -90,7 +85,7 @@ class DeadReckoning:
     def configure(self, config: DeadReckoningConfig) -> None:
         """Go on with other parameters; what has been estimated stays."""
         self._config = config
-        self._gate.configure(config)
+        self._updates.configure(config)
         if self._filter is not None:
             self._filter.configure(config)
 
@@ -98,7 +93,7 @@ class DeadReckoning:
         """Return one that has taken in the same and goes its own way, counting elsewhere."""
         clone = copy(self)
         clone._refused = refused
-        clone._gate = self._gate.fork(refused)
+        clone._updates = self._updates.fork(refused)
         clone._pending = self._pending.copy()
         clone._filter = self._filter.copy() if self._filter else None
         return clone
@@ -118,12 +113,12 @@ class DeadReckoning:
         if isinstance(measurement, BodyVelocity):
             self._measured = True
             self._predict(ekf, stamp_ns, has_inertial)
-            self._update_velocity(ekf, measurement)
+            self._updates.velocity(ekf, measurement, self._stamp_ns)
             return []
         if not has_inertial:
             self._predict(ekf, stamp_ns, has_inertial)
         if isinstance(measurement, Depth):
-            self._update_depth(ekf, measurement)
+            self._updates.depth(ekf, measurement, self._stamp_ns)
             return []
         return [] if has_inertial else [self._odometry(ekf)]
 
@@ -160,19 +155,8 @@ class DeadReckoning:
         if inertial.orientation is None:
             return
         roll, pitch, yaw = inertial.orientation.tolist()
-        variance = self._config.compass_noise**2
-        self._update_angle(ekf, "roll", ATTITUDE.start, roll, variance)
-        self._update_angle(ekf, "pitch", ATTITUDE.start + 1, pitch, variance)
-        difference = wrap_angle(yaw - ekf.state[YAW])
-        if self._gate.admits(ekf, "yaw", YAW, difference, variance, self._stamp_ns):
-            ekf.update_heading(difference, variance, self._heading_gain(ekf, variance))
-
-    def _update_angle(
-        self, ekf: KalmanFilter, name: str, index: int, angle: float, variance: float
-    ) -> None:
-        difference = wrap_angle(angle - ekf.state[index])
-        if self._gate.admits(ekf, name, index, difference, variance, self._stamp_ns):
-            ekf.update(index, difference, variance)
+        self._updates.tilt(ekf, roll, pitch, self._stamp_ns)
+        self._updates.heading(ekf, yaw, self._stamp_ns, self._heading_gain)
 
     def _heading_gain(self, ekf: KalmanFilter, variance: float) -> float:
         # Deviation: with equation 10 the compass, whose bias wanders by degrees, would shake the
@@ -183,25 +167,6 @@ class DeadReckoning:
             return ekf.heading_gain(variance)
         interval = 0.0 if last is None else (self._stamp_ns - last) * 1e-9
         return -math.expm1(-interval / self._config.heading_time_constant)
-
-    def _update_velocity(self, ekf: KalmanFilter, measurement: BodyVelocity) -> None:
-        # Deviation: the DVL corrects the velocity's error instead of being the control u_k, so
-        # that a silent DVL leaves its last word behind, with growing uncertainty.
-        measured, variances = measurement.velocity.tolist(), measurement.covariance.diagonal()
-        for offset, axis in enumerate("xyz"):
-            index = VELOCITY_ERROR.start + offset
-            difference, variance = (
-                measured[offset] - ekf.velocity[offset],
-                float(variances[offset]),
-            )
-            if self._gate.admits(ekf, f"dvl_{axis}", index, difference, variance, self._stamp_ns):
-                ekf.update(index, difference, variance)
-
-    def _update_depth(self, ekf: KalmanFilter, depth: Depth) -> None:
-        difference = depth.z - ekf.state[Z]
-        variance = self._config.depth_noise**2
-        if self._gate.admits(ekf, "depth", Z, difference, variance, self._stamp_ns):
-            ekf.update(Z, difference, variance)
 
     def _odometry(self, ekf: KalmanFilter) -> Odometry:
         has_compass = self._recent(self._compass_ns, self._stamp_ns)
