@@ -5,28 +5,25 @@
 It knows neither port nor clock: packets and times go in, bytes to be written come out.
 """
 
-from collections import Counter, deque
+from collections import Counter
 
+from msss_graphslam.micron.exchange import Exchange
 from msss_graphslam.micron.packets import (
     Alive,
     HeadData,
     HeadStatus,
     Packet,
-    SendData,
     UserData,
     VersionData,
 )
-from msss_graphslam.micron.requests import Requests
 from msss_graphslam.micron.settings import HeadSettings
-from msss_graphslam.micron.stages import HeadState, stage_of
+from msss_graphslam.micron.stages import HeadState, Stage, stage_of
 
 __all__ = ["Session"]
 
 _REBOOT_TAKES_NS = 500_000_000  # what the head says sooner it has said before it rebooted
 _MOST_ATTEMPTS = 3  # to configure the head, without a beam as asked for
 _MOST_DIFFERING = 10  # beams in a row of other settings than asked for
-_DAY_MS = 86_400_000
-_MOST_WAITING = 16  # packets to be written
 
 
 class Session:
@@ -44,35 +41,31 @@ class Session:
         self.counts: Counter[str] = Counter()
         self.version: VersionData | None = None
         self.full_duplex: bool | None = None
-        self._requests = Requests()
-        self._waiting: deque[bytes] = deque(maxlen=_MOST_WAITING)
-        self._now_ns = self._entered_ns = self._deadline_ns = 0
-        self._tries = self._attempts = self._differing = 0
+        self._exchange = Exchange()
+        self._attempts = self._differing = 0
         self._has_scanned = self._in_turn = False
 
     @property
     def beams_a_request(self) -> int:
         """How many beams the head sends for each request."""
-        return self._requests.a_request_brings
+        return self._exchange.requests.a_request_brings
 
     @property
     def next_ns(self) -> int | None:
         """When ``due`` wants to be called again; None while the line is closed."""
-        if self.state is HeadState.CLOSED:
-            return None
-        return self._now_ns if self._waiting else self._deadline_ns
+        return None if self.state is HeadState.CLOSED else self._exchange.next_ns
 
     def opened(self, now_ns: int) -> None:
         """Begin the conversation: the line is open."""
-        self._see(now_ns)
+        self._exchange.see(now_ns)
         self._attempts = 0
         self._enter(HeadState.RESUMING if self._has_scanned else HeadState.REBOOTING)
 
     def closed(self, now_ns: int) -> None:
         """End the conversation: the line is closed, by whomever."""
-        self._see(now_ns)
+        self._exchange.see(now_ns)
         self._break_turn()
-        self._waiting.clear()
+        self._exchange.take()
         self.state = HeadState.CLOSED
 
     def configure(self, settings: HeadSettings) -> None:
@@ -89,16 +82,14 @@ class Session:
 
     def due(self, now_ns: int) -> list[bytes]:
         """Return the packets to be written now."""
-        self._see(now_ns)
-        if self.state is not HeadState.CLOSED and now_ns >= self._deadline_ns:
+        self._exchange.see(now_ns)
+        if self.state is not HeadState.CLOSED and self._exchange.is_overdue:
             self._run_out()
-        packets = list(self._waiting)
-        self._waiting.clear()
-        return packets
+        return self._exchange.take()
 
     def receive(self, packet: Packet, now_ns: int) -> None:
         """Take in what the head has sent."""
-        self._see(now_ns)
+        self._exchange.see(now_ns)
         match packet:
             case _ if self.state is HeadState.CLOSED:
                 self.counts["unexpected_packets"] += 1
@@ -131,11 +122,11 @@ class Session:
     def _go_on(self, beam: HeadData) -> None:
         """Ask for the next beam."""
         self._has_scanned = self._in_turn = True
-        self._tries = stage_of(self.state, self.settings).tries
-        if self._requests.answered():
-            self._send()
-        elif self._requests.listening:
-            self._wait(self.settings.listening_pause)
+        self._exchange.renew(self._stage)
+        if self._exchange.requests.answered():
+            self._exchange.send(self._stage)
+        elif self._exchange.requests.listening:
+            self._exchange.wait(self.settings.listening_pause)
         if self.settings.matches(beam):
             self._attempts = self._differing = 0
             return
@@ -147,7 +138,7 @@ class Session:
     def _take_alive(self, alive: Alive) -> None:
         lost = alive.no_parameters and not alive.sent_configuration
         match self.state:
-            case HeadState.REBOOTING if self._now_ns - self._entered_ns >= _REBOOT_TAKES_NS:
+            case HeadState.REBOOTING if self._exchange.age_ns >= _REBOOT_TAKES_NS:
                 self._centre(alive)
             case HeadState.CENTRING:
                 self._centre(alive)
@@ -194,58 +185,32 @@ class Session:
     def _run_out(self) -> None:
         """Try again, or go on to what follows when the head does not answer."""
         if self.state is HeadState.SCANNING:
-            if self._requests.heard_out():
-                self._send()
+            if self._exchange.requests.heard_out():
+                self._exchange.send(self._stage)
                 return
             self.counts["timeouts"] += 1
-            self._requests.go_on()
-        self._tries -= 1
-        if self._tries > 0:
-            self._send()
+            self._exchange.requests.go_on()
+        if self._exchange.repeat(self._stage):
             return
-        otherwise = stage_of(self.state, self.settings).otherwise
-        if otherwise is HeadState.CONFIGURING:
+        if self._stage.otherwise is HeadState.CONFIGURING:
             self._configure()
         else:
-            self._enter(otherwise)
+            self._enter(self._stage.otherwise)
 
     def _enter(self, state: HeadState) -> None:
         if state is HeadState.SCANNING and self.state is HeadState.CONFIGURING:
-            self._requests.find_out()
+            self._exchange.requests.find_out()
         self.state = state
         self._differing = 0
-        self._tries = stage_of(state, self.settings).tries
-        self._entered_ns = self._now_ns
         if state in (HeadState.REBOOTING, HeadState.CONFIGURING):
             self.counts[f"{state}"] += 1
-        self._send()
+        self._exchange.begin(self._stage)
 
-    def _send(self) -> None:
-        """Have the state's packet written, and wait for an answer."""
-        stage = stage_of(self.state, self.settings)
-        self._wait(stage.patience)
-        match stage.request:
-            case None:
-                return
-            case SendData():
-                self._requests.asked()
-                request = SendData(self._now_ns // 1_000_000 % _DAY_MS)
-            case request:
-                pass
-        self._waiting.append(request.frame().encode())
-
-    def _wait(self, seconds: float) -> None:
-        self._deadline_ns = self._now_ns + round(seconds * 1e9)
+    @property
+    def _stage(self) -> Stage:
+        return stage_of(self.state, self.settings)
 
     def _break_turn(self) -> None:
         if self._in_turn:
             self.counts["partial_turns"] += 1
         self._in_turn = False
-
-    def _see(self, now_ns: int) -> None:
-        """Follow the clock; where it was set back, what was waited for has not moved away."""
-        back = self._now_ns - now_ns
-        if back > 0:
-            self._deadline_ns -= back
-            self._entered_ns -= back
-        self._now_ns = now_ns
