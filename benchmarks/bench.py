@@ -10,7 +10,7 @@ from pathlib import Path
 from benchmarks.bags import simulated_bag
 from benchmarks.bench_tables import growth_table, process_table, stage_table
 from benchmarks.cost import process_cost, scan_costs
-from benchmarks.tables import Table
+from benchmarks.tables import Table, add_folder, publish
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import ESTIMATORS
@@ -41,18 +41,12 @@ a long past, as its gate widens with the uncertainty of the poses."""
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the bags that are missing, measure, print the tables and write them."""
     parser = ArgumentParser(prog="python -m benchmarks.bench", description=__doc__)
-    parser.add_argument(
-        "--out", type=Path, default=Path("bench"), help="folder of bags and tables"
-    )
+    add_folder(parser)
     folder = parser.parse_args(arguments).out
     folder.mkdir(parents=True, exist_ok=True)
     console = Console()
-    page = ["# What a run costs", ABOUT]
-    console.line(ABOUT)
-    for table in _tables(folder, console):
-        table.show(console)
-        page += [f"## {table.title}", table.markdown()]
-    (folder / "bench.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
+    tables = _tables(folder, console)
+    publish("What a run costs", ABOUT, tables, console, folder / "bench.md")
 
 
 def _tables(folder: Path, console: Console) -> Iterator[Table]:

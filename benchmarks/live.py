@@ -16,7 +16,7 @@ from benchmarks.live_tables import (
     replay_table,
     usage_table,
 )
-from benchmarks.tables import Table
+from benchmarks.tables import Table, add_folder, publish
 from msss_graphslam.cli.console import Console
 
 __all__ = ["main"]
@@ -45,18 +45,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--seconds", type=float, default=60.0, help="how long to measure at real time"
     )
-    parser.add_argument(
-        "--out", type=Path, default=Path("bench"), help="folder of bags and tables"
-    )
+    add_folder(parser)
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     console = Console()
-    console.line(ABOUT)
-    page = ["# What the live nodes cost", ABOUT]
-    for table in _tables(options.part or PARTS, options.seconds, options.out, console):
-        table.show(console)
-        page += [f"## {table.title}", table.markdown()]
-    (options.out / "live.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
+    tables = _tables(options.part or PARTS, options.seconds, options.out, console)
+    publish("What the live nodes cost", ABOUT, tables, console, options.out / "live.md")
 
 
 def _tables(

@@ -4,6 +4,7 @@
 
 from argparse import ArgumentParser
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from benchmarks.rivals.graphs import compare_back_ends, graph_table
 from benchmarks.rivals.matching import matching_table, try_all
 from benchmarks.rivals.scan_pairs import scan_pairs
 from benchmarks.rivals.segmentation import detections, segmentation_table
-from benchmarks.tables import Table
+from benchmarks.tables import Table, add_folder, publish
 from msss_graphslam.cli.console import Console
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.recipes import ESTIMATORS
@@ -37,19 +38,12 @@ one core: compare their ratios."""
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure, print the tables and write them."""
     parser = ArgumentParser(prog="python -m benchmarks.side_by_side", description=__doc__)
-    parser.add_argument(
-        "--out", type=Path, default=Path("bench"), help="folder of bags and tables"
-    )
+    add_folder(parser)
     folder = parser.parse_args(arguments).out
     folder.mkdir(parents=True, exist_ok=True)
     console = Console()
-    console.line(ABOUT)
-    page = ["# Side by side", ABOUT]
-    for world in WORLDS:
-        for table in _tables(world, folder, console):
-            table.show(console)
-            page += [f"## {table.title}", table.markdown()]
-    (folder / "side_by_side.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
+    tables = chain.from_iterable(_tables(world, folder, console) for world in WORLDS)
+    publish("Side by side", ABOUT, tables, console, folder / "side_by_side.md")
 
 
 def _tables(name: str, folder: Path, console: Console) -> Iterator[Table]:

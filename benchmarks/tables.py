@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables for a terminal and for a Markdown page."""
 
-from collections.abc import Sequence
+from argparse import ArgumentParser
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from msss_graphslam.cli.console import Console, Row
 
-__all__ = ["Table"]
+__all__ = ["Table", "add_folder", "publish"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,3 +28,20 @@ class Table:
         """Return the table without its title; columns but the first are aligned to the right."""
         rule = ["---", *["---:"] * (len(self.header) - 1)]
         return "\n".join(f"| {' | '.join(row)} |" for row in (self.header, rule, *self.rows))
+
+
+def add_folder(parser: ArgumentParser) -> None:
+    """Add the option that says where bags and tables are kept."""
+    parser.add_argument(
+        "--out", type=Path, default=Path("bench"), help="folder of bags and tables"
+    )
+
+
+def publish(title: str, about: str, tables: Iterable[Table], console: Console, path: Path) -> None:
+    """Print the tables as they come, and write them to a Markdown page."""
+    console.line(about)
+    page = [f"# {title}", about]
+    for table in tables:
+        table.show(console)
+        page += [f"## {table.title}", table.markdown()]
+    path.write_text("\n\n".join(page) + "\n", encoding="utf-8")

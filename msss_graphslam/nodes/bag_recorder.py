@@ -11,12 +11,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
-import rclpy
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from msss_graphslam.errors import UserError
@@ -30,7 +28,7 @@ from msss_graphslam.recordings.writer import BagWriter
 from msss_graphslam.ros.diagnostics import Diagnostics
 from msss_graphslam.ros.messages import available, make, message_class
 from msss_graphslam.ros.qos import DEEP, name_of
-from msss_graphslam.ros.running import leave
+from msss_graphslam.ros.running import begin, leave
 
 __all__ = ["BagRecorder", "main"]
 
@@ -156,18 +154,11 @@ def _spin(node: Node, stop: _Stop) -> None:
         executor.shutdown()
 
 
-def _init() -> None:
-    try:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as error:
-        raise UserError(" ".join(str(error).split())) from error
-
-
 def main() -> int:
     """Run the node until a signal comes; return its exit code."""
     stop = _Stop()
     try:
-        _init()
+        begin()
         for line in _record(stop):
             print(f"bag_recorder: {line}", flush=True)
     except (UserError, OSError) as error:

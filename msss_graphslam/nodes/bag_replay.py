@@ -6,10 +6,8 @@ import signal
 import sys
 from typing import Any
 
-import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from msss_graphslam.errors import UserError
@@ -26,7 +24,7 @@ from msss_graphslam.recordings.mcap_reading import RawMessage
 from msss_graphslam.recordings.reader import open_recording
 from msss_graphslam.ros.diagnostics import Diagnostics
 from msss_graphslam.ros.messages import available, make, message_class
-from msss_graphslam.ros.running import leave
+from msss_graphslam.ros.running import begin, leave
 
 __all__ = ["BagReplay", "main"]
 
@@ -177,13 +175,6 @@ def _play() -> int:
     return 0
 
 
-def _init() -> None:
-    try:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as error:
-        raise UserError(" ".join(str(error).split())) from error
-
-
 def main() -> int:
     """Run the node until the bag is worked off; return its exit code."""
     # A shell that starts it in the background has SIGINT ignored.
@@ -191,7 +182,7 @@ def main() -> int:
         signal.signal(number, signal.default_int_handler)
     try:
         # Our own handling of SIGINT keeps the middleware alive until the loop has ended.
-        _init()
+        begin()
         return _play()
     except UserError as error:
         print(f"bag_replay: {error}", file=sys.stderr)

@@ -13,7 +13,9 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
-__all__ = ["leave", "run"]
+from msss_graphslam.errors import UserError
+
+__all__ = ["begin", "leave", "run"]
 
 # How long a signal may wait for a quiet node [s].
 _PULSE = 0.1
@@ -51,6 +53,14 @@ def run(node_class: Callable[[], Any]) -> int:
         node.destroy_node()
         try_shutdown()
     return 0
+
+
+def begin() -> None:
+    """Begin with ROS for a node that handles signals itself; UserError for wrong arguments."""
+    try:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        raise UserError(" ".join(str(error).split())) from error
 
 
 def leave(code: int) -> NoReturn:

@@ -5,7 +5,6 @@
 import json
 import os
 import signal
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from stand_ins import wait_until as wait_long
 from msss_graphslam.simulation.recording import SimulatedBag
 
 pytest.importorskip("rclpy")
-from nodes.processes import Domain, NodeProcess, domain, wait_until
+from nodes.processes import Domain, domain, live, wait_until
 
 pytestmark = pytest.mark.slow
 
@@ -29,10 +28,6 @@ LIMIT = 120.0
 def ros() -> Iterator[Domain]:
     with domain() as number:
         yield number
-
-
-def live(ros: Domain, *arguments: object) -> NodeProcess:
-    return NodeProcess([sys.executable, "-m", "msss_graphslam", "live", *map(str, arguments)], ros)
 
 
 def children_of(pid: int) -> dict[str, int]:

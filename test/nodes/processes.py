@@ -20,7 +20,16 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-__all__ = ["LIMIT", "Domain", "NodeProcess", "TestNode", "domain", "wait_until"]
+__all__ = [
+    "LIMIT",
+    "Domain",
+    "NodeProcess",
+    "TestNode",
+    "as_yaml",
+    "domain",
+    "live",
+    "wait_until",
+]
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 180.0
@@ -57,7 +66,7 @@ class Domain:
 
     def start(self, node: str, *arguments: str, namespace: str = "", **parameters: Any) -> Any:
         """Start ``msss_graphslam.nodes.<node>``; use the result as a context manager."""
-        options = [f"-p{name}:={_as_yaml(value)}" for name, value in parameters.items()]
+        options = [f"-p{name}:={as_yaml(value)}" for name, value in parameters.items()]
         options = [part for option in options for part in ("-p", option[2:])]
         remapped = ["-r", f"__ns:={namespace}"] if namespace else []
         ros = [*options, *remapped, *arguments]
@@ -162,6 +171,11 @@ class NodeProcess:
             self._lines.append(line)
 
 
+def live(of: Domain, *arguments: object) -> NodeProcess:
+    """Start ``msss live``; use the result as a context manager."""
+    return NodeProcess([sys.executable, "-m", "msss_graphslam", "live", *map(str, arguments)], of)
+
+
 class TestNode:
     """A node in the test's own process, spun in a thread, in a domain."""
 
@@ -209,7 +223,8 @@ class TestNode:
             self.executor.spin_once(timeout_sec=0.05)
 
 
-def _as_yaml(value: Any) -> str:
+def as_yaml(value: Any) -> str:
+    """Return a parameter's value as ROS's command line takes it."""
     if isinstance(value, bool):
         return str(value).lower()
     return str(value)

@@ -3,15 +3,13 @@
 """A bag with nothing but the head's bytes: the nodes make of it what the offline run makes."""
 
 import json
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from command_line import msss
-from nodes.processes import Domain, NodeProcess, domain
+from nodes.processes import Domain, live
 
 from msss_graphslam.messages import topics
 from msss_graphslam.recordings.reader import open_recording
@@ -54,16 +52,6 @@ def offline(raw_bag: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.fixture
-def ros() -> Iterator[Domain]:
-    with domain() as found:
-        yield found
-
-
-def live(ros: Domain, *arguments: object) -> NodeProcess:
-    return NodeProcess([sys.executable, "-m", "msss_graphslam", "live", *map(str, arguments)], ros)
-
-
 def summary(folder: Path) -> dict[str, Any]:
     content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert isinstance(content, dict)
@@ -85,31 +73,31 @@ def test_the_bag_holds_bytes_only_and_gives_scans(raw_bag: Path, offline: Path) 
 
 @pytest.mark.parametrize("rate", [0, 8])
 def test_the_driver_and_the_nodes_make_the_same_bytes(
-    raw_bag: Path, offline: Path, ros: Domain, tmp_path: Path, rate: int
+    raw_bag: Path, offline: Path, at: Domain, tmp_path: Path, rate: int
 ) -> None:
-    with live(ros, "--replay", raw_bag, "--rate", rate, "--out", tmp_path / "live") as process:
+    with live(at, "--replay", raw_bag, "--rate", rate, "--out", tmp_path / "live") as process:
         assert process.wait(LIMIT) == 0
     assert (tmp_path / "live" / "log" / "micron_driver.log").exists()
     assert_same(tmp_path / "live", offline)
 
 
 def test_bytes_without_their_times_have_those_of_the_log(
-    raw_bag: Path, offline: Path, ros: Domain, tmp_path: Path
+    raw_bag: Path, offline: Path, at: Domain, tmp_path: Path
 ) -> None:
     bare = without_labels(raw_bag, tmp_path / "bare")
     done = msss("run", bare, "--out", tmp_path / "run")
     assert done.returncode == 0
-    with live(ros, "--replay", bare, "--rate", 0, "--out", tmp_path / "live") as process:
+    with live(at, "--replay", bare, "--rate", 0, "--out", tmp_path / "live") as process:
         assert process.wait(LIMIT) == 0
     for folder in (tmp_path / "run", tmp_path / "live"):
         assert_same(folder, offline)
 
 
 def test_what_is_recorded_of_it_has_both_and_is_read_by_its_pings(
-    raw_bag: Path, ros: Domain, tmp_path: Path
+    raw_bag: Path, at: Domain, tmp_path: Path
 ) -> None:
     arguments = ("--replay", raw_bag, "--rate", 0, "--record", tmp_path / "dive")
-    with live(ros, *arguments, "--out", tmp_path / "live") as process:
+    with live(at, *arguments, "--out", tmp_path / "live") as process:
         assert process.wait(LIMIT) == 0
     recorded = open_recording(tmp_path / "dive")
     assert recorded.find(topics.SONAR_RAW) is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from nodes.processes import Domain, NodeProcess
+from nodes.processes import Domain, NodeProcess, as_yaml
 
 from msss_graphslam.nodes.names import SLAM_NODES
 
@@ -110,14 +110,10 @@ class Fleet:
         module = f"msss_graphslam.nodes.{name}"
         command = [*self._prefix(name), sys.executable, "-m", module, "--ros-args", *arguments]
         for key, value in parameters.items():
-            command += ["-p", f"{key}:={_as_yaml(value)}"]
+            command += ["-p", f"{key}:={as_yaml(value)}"]
         if self.namespace:
             command += ["-r", f"__ns:={self.namespace}"]
         return self._stack.enter_context(NodeProcess(command, self._domain))
 
     def _prefix(self, name: str) -> list[str]:
         return self._domain.prefix(name) if isinstance(self._domain, Surroundings) else []
-
-
-def _as_yaml(value: Any) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -29,9 +29,7 @@ def errors_over_time(assessments: Sequence[Assessment]) -> Plate | None:
         if run.online_errors is not None and len(assessments) == 1:
             name = f"{label(run.estimator)}, online"
             _draw(position, heading, run.online_errors, start, colour(run.estimator), name, ":")
-    position.set_ylabel("position error [m]")
-    heading.set_ylabel("heading error [deg]")
-    position.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
+    _label(position, heading, "error")
     caption = (
         "Distance from the true position with the trajectory anchored at its start, and estimated"
         " minus true heading."
@@ -60,9 +58,7 @@ def corrections(assessments: Sequence[Assessment]) -> Plate:
             distance = np.linalg.norm(difference[:, :2], axis=1)
             position.plot(time, distance, style, color=shade, label=name)
             heading.plot(time, np.degrees(np.unwrap(difference[:, 2])), style, color=shade)
-    position.set_ylabel("position change [m]")
-    heading.set_ylabel("heading change [deg]")
-    position.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
+    _label(position, heading, "change")
     caption = (
         "Distance between the corrected and the dead-reckoned position, and the difference of"
         " their headings. This is no error: the recording has no ground truth."
@@ -75,6 +71,13 @@ def _panels() -> tuple[Figure, tuple[Axes, Axes]]:
     upper.margins(x=0.0)
     lower.set_xlabel("time since the start of the recording [min]")
     return figure, (upper, lower)
+
+
+def _label(position: Axes, heading: Axes, what: str) -> None:
+    """Name the axes, and the lines that are drawn."""
+    position.set_ylabel(f"position {what} [m]")
+    heading.set_ylabel(f"heading {what} [deg]")
+    position.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
 
 
 def _draw(

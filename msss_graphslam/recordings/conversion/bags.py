@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS 1 and rosbag2 bags, read with the message definitions that they carry."""
 
+from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
@@ -11,10 +12,14 @@ from rosbags.interfaces import Connection
 from msss_graphslam.messages import Refusal
 from msss_graphslam.messages.topics import SONAR_PING, Topic
 from msss_graphslam.recordings.conversion.definitions import Undecodable, deserialiser
-from msss_graphslam.recordings.conversion.foreign import ForeignMessage
+from msss_graphslam.recordings.conversion.foreign import (
+    BeamEncoder,
+    ForeignFormat,
+    ForeignMessage,
+)
 from msss_graphslam.recordings.conversion.source import ForeignSource
 
-__all__ = ["Conversion", "convert_beams", "convert_messages", "has_type"]
+__all__ = ["BeamBags", "Conversion", "convert_beams", "convert_messages", "has_type"]
 
 
 class Conversion(NamedTuple):
@@ -23,6 +28,30 @@ class Conversion(NamedTuple):
     connection: Connection
     topic: Topic
     convert: Callable[[Any], Any]
+
+
+class BeamBags(ForeignFormat):
+    """Bags of a driver that publishes one beam a message, ``type_name`` being the end of its type.
+
+    ``decoder`` returns what makes a beam of such a message, which may raise Refusal.
+    """
+
+    type_name: str
+
+    @abstractmethod
+    def decoder(self, source: ForeignSource, encoder: BeamEncoder) -> Callable[[Any], Any]:
+        """Return what encodes the beam of a message of this bag."""
+
+    def recognises(self, source: ForeignSource) -> bool:
+        """Whether the bag holds such messages."""
+        return has_type(source, self.type_name)
+
+    def messages(
+        self, source: ForeignSource, refusals: Counter[str], inverted: bool
+    ) -> Iterator[ForeignMessage]:
+        """Yield the beams."""
+        decode = self.decoder(source, BeamEncoder(inverted))
+        return convert_beams(source, self.type_name, decode, refusals)
 
 
 def has_type(source: ForeignSource, type_name: str) -> bool:

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of McGill's tritech_micron driver: one ``sensor_msgs/PointCloud`` a beam."""
 
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable
 from math import atan2
 from typing import Any
 
@@ -12,24 +11,18 @@ import numpy as np
 from msss_graphslam.core.types import Array
 from msss_graphslam.messages import Refusal
 from msss_graphslam.messages.fields import stamp_of
-from msss_graphslam.recordings.conversion.bags import convert_beams, has_type
-from msss_graphslam.recordings.conversion.foreign import (
-    BeamEncoder,
-    ForeignFormat,
-    ForeignMessage,
-    seanet_bearing,
-)
+from msss_graphslam.recordings.conversion.bags import BeamBags
+from msss_graphslam.recordings.conversion.foreign import BeamEncoder, seanet_bearing
 from msss_graphslam.recordings.conversion.source import ForeignSource
 
 __all__ = ["McGill"]
 
-_TYPE = "sensor_msgs/msg/PointCloud"
 _CHANNEL = "intensity"
 # Micrometres: below that, 32-bit coordinates only add noise that differs from beam to beam.
 _LENGTH_DIGITS = 6
 
 
-class McGill(ForeignFormat):
+class McGill(BeamBags):
     """The points lie on the ray of the head's own angle, each at its bin's far edge.
 
     The angle is taken from the last point, which equals the driver's heading topic but belongs to
@@ -39,16 +32,10 @@ class McGill(ForeignFormat):
 
     name = "mcgill"
     description = "ROS 1 bag with sensor_msgs/PointCloud beams (McGill's tritech_micron)"
+    type_name = "sensor_msgs/msg/PointCloud"
 
-    def recognises(self, source: ForeignSource) -> bool:
-        """Whether the bag holds clouds."""
-        return has_type(source, _TYPE)
-
-    def messages(
-        self, source: ForeignSource, refusals: Counter[str], inverted: bool
-    ) -> Iterator[ForeignMessage]:
-        """Yield the beams."""
-        encoder = BeamEncoder(inverted)
+    def decoder(self, _: ForeignSource, encoder: BeamEncoder) -> Callable[[Any], Any]:
+        """Return what encodes the beam of a message of this bag."""
 
         def beam(cloud: Any) -> Any:
             last = cloud.points[-1] if cloud.points else None
@@ -59,7 +46,7 @@ class McGill(ForeignFormat):
                 stamp_of(cloud, "beam"), bearing, _bin_centres(cloud), _codes(cloud)
             )
 
-        return convert_beams(source, _TYPE, beam, refusals)
+        return beam
 
 
 def _bin_centres(cloud: Any) -> Array:

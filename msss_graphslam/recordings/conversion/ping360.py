@@ -3,7 +3,7 @@
 """Bags of the ping360_sonar driver: one ``SonarEcho`` a beam."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable
 from math import isfinite, pi
 from typing import Any
 
@@ -12,25 +12,19 @@ import numpy as np
 from msss_graphslam.core.types import Array
 from msss_graphslam.messages import Refusal
 from msss_graphslam.messages.fields import stamp_of
-from msss_graphslam.recordings.conversion.bags import convert_beams, has_type
-from msss_graphslam.recordings.conversion.foreign import (
-    BeamEncoder,
-    ForeignFormat,
-    ForeignMessage,
-    seanet_bearing,
-)
+from msss_graphslam.recordings.conversion.bags import BeamBags, convert_beams
+from msss_graphslam.recordings.conversion.foreign import BeamEncoder, seanet_bearing
 from msss_graphslam.recordings.conversion.source import ForeignSource
 
 __all__ = ["Ping360"]
 
-_TYPE = "/SonarEcho"
 _TICK = 25e-9  # s, of the time between two samples
 _TURN = 400.0  # gradians
 # No angle in radians lies beyond a turn; the margin is for 32-bit floats.
 _LARGEST_RADIANS = 2.0 * pi + 1e-3
 
 
-class Ping360(ForeignFormat):
+class Ping360(BeamBags):
     """A Ping360 counts as a SeaNet head does: clockwise from above, half a turn is ahead.
 
     That is how the maker's own viewer draws it; the driver passes the head's angle on. In radians,
@@ -40,16 +34,10 @@ class Ping360(ForeignFormat):
 
     name = "ping360"
     description = "ROS 2 or ROS 1 bag with SonarEcho (ping360_sonar)"
+    type_name = "/SonarEcho"
 
-    def recognises(self, source: ForeignSource) -> bool:
-        """Whether the bag holds a SonarEcho topic."""
-        return has_type(source, _TYPE)
-
-    def messages(
-        self, source: ForeignSource, refusals: Counter[str], inverted: bool
-    ) -> Iterator[ForeignMessage]:
-        """Yield the beams."""
-        encoder = BeamEncoder(inverted)
+    def decoder(self, source: ForeignSource, encoder: BeamEncoder) -> Callable[[Any], Any]:
+        """Return what encodes the beam of a message of this bag."""
         unit = self._unit(source)
 
         def beam(echo: Any) -> Any:
@@ -59,7 +47,7 @@ class Ping360(ForeignFormat):
             bearing = seanet_bearing(echo.angle * unit)
             return encoder.message(stamp_of(echo, "beam"), bearing, _ranges(echo), codes)
 
-        return convert_beams(source, _TYPE, beam, refusals)
+        return beam
 
     def _unit(self, source: ForeignSource) -> float:
         """Return the unit of the angles [rad]."""
@@ -67,7 +55,7 @@ class Ping360(ForeignFormat):
         def angle(echo: Any) -> float:
             return abs(float(echo.angle))
 
-        found = convert_beams(source, _TYPE, angle, Counter())
+        found = convert_beams(source, self.type_name, angle, Counter())
         largest = max((entry.message for entry in found if isfinite(entry.message)), default=0.0)
         return 1.0 if largest <= _LARGEST_RADIANS else 2.0 * pi / _TURN
 
