@@ -28,10 +28,15 @@ HEADER = ["", "NEES", "in the band", "above", "below", "error x, y, yaw", "state
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run what is missing, then write the page."""
-    parser = ArgumentParser("consistency", description=__doc__)
+    parser = ArgumentParser(prog="python -m benchmarks.consistency", description=__doc__)
     parser.add_argument("--seeds", type=positive, default=20, help="missions in the pond")
     parser.add_argument("--paper-seeds", type=positive, default=20, help="in the paper's basin")
-    parser.add_argument("--folder", type=Path, default=Path("reproduction"))
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        default=Path("reproduction"),
+        help="folder of single results and, in `flights`, of simulated missions",
+    )
     parser.add_argument("--page", type=Path, default=Path("docs", "consistency.md"))
     options = parser.parse_args(arguments)
     seeds = {"pond": options.seeds, "paper": options.paper_seeds}
@@ -39,8 +44,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     results = {
         world: _complete(world, count, options.folder, used) for world, count in seeds.items()
     }
-    command = f"python -m benchmarks.consistency --seeds {options.seeds} --paper-seeds "
-    provenance = Provenance.of(f"{command}{options.paper_seeds}", used)
+    command = f"{parser.prog} --seeds {options.seeds} --paper-seeds {options.paper_seeds}"
+    provenance = Provenance.of(command, used)
     options.page.write_text(consistency_page(results, provenance), encoding="utf-8")
 
 

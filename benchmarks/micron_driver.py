@@ -32,7 +32,9 @@ _SETTINGS = {"bins": BINS, "step_deg": 1.6875, "range_m": 20.0, "baudrate": 2304
 
 def main() -> None:
     """Print the table."""
-    parser = ArgumentParser(description=__doc__.splitlines()[0])
+    parser = ArgumentParser(
+        prog="python -m benchmarks.micron_driver", description=__doc__.splitlines()[0]
+    )
     parser.add_argument("--seconds", type=float, default=20.0, help="length of each measurement")
     seconds = parser.parse_args().seconds
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
