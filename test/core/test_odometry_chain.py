@@ -42,6 +42,16 @@ def compounded(made: list[Constraint], first: int, second: int) -> tuple[Array, 
     return pose, spread
 
 
+def assert_compounded(
+    chain: OdometryChain, made: list[Constraint], first: int, second: int
+) -> None:
+    known = chain.displacement(first, second)
+    assert known is not None
+    pose, spread = compounded(made, first, second)
+    np.testing.assert_allclose(between(pose, known[0]), 0.0, atol=1e-9)
+    np.testing.assert_allclose(known[1], spread, rtol=1e-6, atol=1e-9)
+
+
 def closure(first: int, second: int, relative: Array, spread: Array = NONE) -> Constraint:
     return Constraint(ConstraintKind.LOOP, first, second, relative, spread)
 
@@ -53,11 +63,7 @@ def test_equals_compounding_edge_by_edge(
     seed: int, first: int, second: int, far_off: bool
 ) -> None:
     made = edges(seed, far_off)
-    known = chain_of(made).displacement(first, second)
-    assert known is not None
-    pose, spread = compounded(made, first, second)
-    np.testing.assert_allclose(between(pose, known[0]), 0.0, atol=1e-9)
-    np.testing.assert_allclose(known[1], spread, rtol=1e-6, atol=1e-9)
+    assert_compounded(chain_of(made), made, first, second)
 
 
 def test_the_distance_counts_every_covariance_once() -> None:
@@ -85,11 +91,7 @@ def test_nothing_is_known_across_a_break() -> None:
     assert chain.displacement(2, 5) is None
     assert chain.squared_distance(closure(2, 5, np.full(3, 50.0)), np.eye(3)) == 0.0
     for first, second in ((0, 3), (4, 8)):
-        known = chain.displacement(first, second)
-        assert known is not None
-        pose, spread = compounded(made, first, second)
-        np.testing.assert_allclose(between(pose, known[0]), 0.0, atol=1e-9)
-        np.testing.assert_allclose(known[1], spread, rtol=1e-6, atol=1e-9)
+        assert_compounded(chain, made, first, second)
 
 
 def test_a_chain_that_was_cut_goes_on_as_if_it_had_ended_there() -> None:

@@ -55,19 +55,24 @@ def test_without_a_clock_nobody_publishes_it(tmp_path: Path, at: Domain) -> None
         assert other.node.count_publishers("/clock") == 0
 
 
+def lagging(listener: Listener, newest: Newest, step_ns: int) -> list[int]:
+    """Take no more than a step at a time, and say so; return the leads [ns] as they come."""
+    ahead: list[int] = []
+
+    def take() -> None:
+        if newest.stamp_ns:
+            ahead.append(newest.stamp_ns - newest.told_ns)
+            newest.tell(min(newest.stamp_ns, newest.told_ns + step_ns))
+
+    listener.node.create_timer(0.02, take)
+    return ahead
+
+
 def test_a_fast_replay_stays_within_a_second_of_dead_reckoning(tmp_path: Path, at: Domain) -> None:
     bag = write_bag(tmp_path / "dive", sensor_messages(250))
-    ahead: list[int] = []
     with Listener(at) as listener:
         newest = Newest(listener)
-
-        def settle() -> None:
-            """Take only half of what is there, and say so: the lead is what has come since."""
-            if newest.stamp_ns:
-                ahead.append(newest.stamp_ns - newest.told_ns)
-                newest.tell(min(newest.stamp_ns, newest.told_ns + 200_000_000))
-
-        listener.node.create_timer(0.02, settle)
+        ahead = lagging(listener, newest, 200_000_000)
         with replay(at, bag) as process:
             assert process.wait() == 0
             assert "1250 messages, 0 stalls" in process.output
@@ -78,16 +83,9 @@ def test_a_fast_replay_stays_within_a_second_of_dead_reckoning(tmp_path: Path, a
 
 def test_a_fast_replay_stays_within_seconds_of_scan_generation(tmp_path: Path, at: Domain) -> None:
     bag = write_bag(tmp_path / "dive", sensor_messages(500))
-    ahead: list[int] = []
     with Listener(at) as listener:
         newest = Newest(listener, topics.SCAN_PROGRESS)
-
-        def take() -> None:
-            if newest.stamp_ns:
-                ahead.append(newest.stamp_ns - newest.told_ns)
-                newest.tell(min(newest.stamp_ns, newest.told_ns + 100_000_000))
-
-        listener.node.create_timer(0.02, take)
+        ahead = lagging(listener, newest, 100_000_000)
         with replay(at, bag) as process:
             assert process.wait() == 0
             assert "2500 messages, 0 stalls" in process.output
