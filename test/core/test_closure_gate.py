@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
 from collections.abc import Iterable
+from copy import deepcopy
 
 import numpy as np
 import pytest
 
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.graph.closure_gate import CONTRADICTS, ClosureGate
+from msss_graphslam.core.graph.closure_gate import COMPANY, CONTRADICTS, STRETCH, ClosureGate
 from msss_graphslam.core.graph.layout_slack import AT_MOST, LAYOUT, PRIOR, LayoutSlack
 from msss_graphslam.core.types import Constraint, ConstraintKind
 
@@ -105,3 +106,53 @@ def test_a_keyframe_that_was_dropped_leaves_nothing_behind() -> None:
     far = [*tried_at(20, SPANS), edge(ConstraintKind.LOOP, 3, 20, [0.3, 0.0, 0.0])]
     judged = [one.pass_through(far)[-1].figures["contradiction"] for one in (gate, untouched)]
     assert judged[0] == judged[1]
+
+
+def far_at(share: float, first: int, gate: ClosureGate) -> Constraint:
+    """A closure with the next keyframe, at a share of the bound from the way."""
+    copy = deepcopy(gate)
+    second = len(gate)
+    probe = edge(ConstraintKind.LOOP, first, second, [1.0, 0.0, 0.0])
+    distance = copy.pass_through([*tried_at(second, SPANS), probe])[-1].figures["contradiction"]
+    return edge(ConstraintKind.LOOP, first, second, [np.sqrt(share * BOUND / distance), 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("excluded", "share", "refusal"),
+    [
+        (None, 0.95, ""),
+        (1.05, 1.05 * COMPANY, CONTRADICTS),
+        (1.05, 0.95 * COMPANY, ""),
+        (0.95, 0.95, ""),
+    ],
+)
+def test_an_excluded_closure_makes_those_of_its_stretch_doubtful(
+    excluded: float | None, share: float, refusal: str
+) -> None:
+    gate = gate_of(COUNT, SPANS)
+    if excluded:
+        gate.pass_through([*tried_at(COUNT, SPANS), far_at(excluded, 10, gate)])
+    else:
+        gate.pass_through(tried_at(COUNT, SPANS))
+    far = far_at(share, 11, gate)
+    assert gate.pass_through([*tried_at(COUNT + 1, SPANS), far])[-1].refusal == refusal
+
+
+@pytest.mark.parametrize(("since", "apart"), [(STRETCH, 1), (1, STRETCH)])
+@pytest.mark.parametrize(("more", "refusal"), [(0, CONTRADICTS), (1, "")])
+def test_a_stretch_ends(since: int, apart: int, more: int, refusal: str) -> None:
+    gate = gate_of(COUNT, SPANS)
+    gate.pass_through([*tried_at(COUNT, SPANS), far_at(2.0, 10, gate)])
+    longer = (since + more, apart) if since > apart else (since, apart + more)
+    for second in range(COUNT + 1, COUNT + longer[0]):
+        gate.pass_through(tried_at(second, SPANS))
+    far = far_at(0.9, 10 + longer[1], gate)
+    assert gate.pass_through([*tried_at(COUNT + longer[0], SPANS), far])[-1].refusal == refusal
+
+
+def test_an_excluded_closure_of_a_dropped_keyframe_is_forgotten() -> None:
+    gate = gate_of(COUNT, SPANS)
+    gate.pass_through([*tried_at(COUNT, SPANS), far_at(2.0, 10, gate)])
+    gate.drop_newest()
+    far = far_at(0.9, 11, gate)
+    assert gate.pass_through([*tried_at(COUNT, SPANS), far])[-1].accepted

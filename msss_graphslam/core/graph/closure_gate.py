@@ -10,13 +10,23 @@ import numpy as np
 from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.graph.known_places import KNOWN_BETTER
 from msss_graphslam.core.graph.layout_slack import LayoutSlack
-from msss_graphslam.core.graph.odometry_chain import OdometryChain
+from msss_graphslam.core.graph.odometry_chain import LAG, OdometryChain
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["CONTRADICTS", "ClosureGate"]
 
 CONTRADICTS = "contradicts_odometry"
 """Refusal of a closure that the way between its keyframes excludes."""
+
+STRETCH = 2 * LAG
+"""Closures whose keyframes are so near to each other in number are of the same two stretches."""
+
+COMPANY = 0.5
+"""Share of the bound for closures of a stretch of which one was just excluded.
+
+The error of the way is common to them all, and so is what made them false: where one is beyond
+what a thousandth of the true ones exceed, the others have to be within what one in twenty does.
+"""
 
 
 class ClosureGate:
@@ -30,6 +40,7 @@ class ClosureGate:
         self._bound = bound
         self._chain = OdometryChain()
         self._slack = self._slack_before = LayoutSlack()
+        self._excluded: list[tuple[int, int]] = []
 
     @property
     def slack(self) -> Array:
@@ -57,6 +68,7 @@ class ClosureGate:
         """Take the newest keyframe back, as if it had not been there; once in a row."""
         self._chain.drop_newest()
         self._slack = self._slack_before
+        self._excluded = [ends for ends in self._excluded if ends[1] < len(self)]
 
     def __len__(self) -> int:
         return len(self._chain)
@@ -65,12 +77,26 @@ class ClosureGate:
         off, spread = self._chain.deviation(closure)
         distance = float(off @ np.linalg.solve(spread + self.slack, off))
         figures = {**closure.figures, "contradiction": distance}
+        in_company = self._is_in_company(closure)
         if distance > self._bound:
+            self._exclude(closure)
+        if distance > self._bound * (COMPANY if in_company else 1.0):
             return replace(closure, refusal=CONTRADICTS, figures=figures)
         if self._is_near_match(closure):
             self._slack = self._slack.with_match(off)
             self._chain.take_in(closure, share)
         return replace(closure, figures=figures)
+
+    def _is_in_company(self, closure: Constraint) -> bool:
+        """Whether a closure of the same stretches was excluded not long ago."""
+        return any(
+            closure.second - second <= STRETCH and abs(closure.first - first) <= STRETCH
+            for first, second in self._excluded
+        )
+
+    def _exclude(self, closure: Constraint) -> None:
+        recent = [ends for ends in self._excluded if closure.second - ends[1] <= STRETCH]
+        self._excluded = [*recent, (closure.first, closure.second)]
 
     def _is_near_match(self, edge: Constraint) -> bool:
         return _is_match(edge) and self._is_usable(edge) and self._chain.reaches(edge)
