@@ -129,3 +129,21 @@ def test_streaks_go_on_while_more_closures_come() -> None:
         assert review.judge(POSES) == NOTHING
         review.add([closure(0.0)] * 100)
     assert review.judge(POSES) == Verdict((0,), ())
+
+
+@pytest.mark.parametrize(("factor", "withdrawn"), [(0.85, ()), (0.95, (0,))])
+def test_a_graph_that_comes_nearer_is_being_convinced(
+    factor: float, withdrawn: tuple[int, ...]
+) -> None:
+    """Of the squared distance to a closure that it contradicts it takes off a share every time."""
+    review = reviewed(closure(0.0))
+    squares = 40.0 * BOUND * factor ** np.arange(PATIENCE + 2)
+    verdicts = [review.judge(moved(POSES, np.sqrt(square) * 0.1)) for square in squares]
+    assert max(verdict.withdrawn for verdict in verdicts) == withdrawn
+
+
+def test_what_is_allowed_beside_the_covariances_counts() -> None:
+    for slack, withdrawn in ((LAYOUT, ()), (0.1 * LAYOUT, (0,))):
+        review = ClosureReview(BOUND)
+        review.add([closure(0.9 * BOUND)], slack)
+        assert [review.judge(POSES) for _ in range(PATIENCE)][-1].withdrawn == withdrawn

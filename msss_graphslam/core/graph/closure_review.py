@@ -12,15 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from msss_graphslam.core.compounding import wrap
+from msss_graphslam.core.graph.layout_slack import LAYOUT
 from msss_graphslam.core.types import Array, Constraint
 
-__all__ = ["LAYOUT", "PATIENCE", "ClosureReview", "Verdict"]
-
-LAYOUT = np.diag([0.15**2, 0.15**2, 0.02**2])
-"""How far off a match may be for how dead reckoning has bent its scans (3, 3)."""
+__all__ = ["PATIENCE", "ClosureReview", "Verdict"]
 
 PATIENCE = 3
 """So many updates in a row a closure must disagree to be withdrawn, or agree to come back."""
+
+NEARING = 0.9
+"""While the graph comes nearer to a closure by this factor of the squared distance or more from
+update to update, it is being convinced: where a loop closes at last, the first closures pull the
+graph over only bit by bit."""
 
 FIRST_ROOM = 64
 """For so many closures at first."""
@@ -46,15 +49,15 @@ class ClosureReview:
         self._kept = _Closures.empty(FIRST_ROOM)
         self._poses = np.empty((0, 3))
 
-    def add(self, edges: Sequence[Constraint]) -> None:
-        """Take note of closures that the graph has taken."""
+    def add(self, edges: Sequence[Constraint], slack: Array = LAYOUT) -> None:
+        """Take note of closures that the graph has taken; ``slack`` (3, 3) is allowed beside."""
         if not edges:
             return
         first, self._count = self._count, self._count + len(edges)
         while self._count > len(self._kept.ends):
             self._kept = self._kept.doubled()
         new = self._kept.part(first, self._count)
-        spreads = np.array([edge.covariance for edge in edges]) + LAYOUT
+        spreads = np.array([edge.covariance for edge in edges]) + slack
         new.ends[:] = [(edge.first, edge.second) for edge in edges]
         new.relative[:] = [edge.relative_pose for edge in edges]
         new.information[:] = np.linalg.inv(spreads)
@@ -63,8 +66,10 @@ class ClosureReview:
     def judge(self, poses: Array) -> Verdict:
         """Compare all closures with the poses (n, 3) after an update."""
         closures = self._kept.part(0, self._count)
+        before = closures.distances.copy()
         self._follow(closures, poses)
-        changes = (closures.distances > self._bound) == closures.inside
+        nearing = closures.inside & (closures.distances < NEARING * before)
+        changes = ((closures.distances > self._bound) == closures.inside) & ~nearing
         closures.streaks[:] = np.where(changes, closures.streaks + 1, 0)
         due = closures.streaks >= PATIENCE
         withdrawn, readmitted = (

@@ -7,16 +7,12 @@ from dataclasses import replace
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.graph.back_end import BackEnd
-from msss_graphslam.core.graph.closure_review import LAYOUT, ClosureReview
-from msss_graphslam.core.graph.constraint_defects import defect
+from msss_graphslam.core.graph.closure_gate import CONTRADICTS, ClosureGate
+from msss_graphslam.core.graph.closure_review import ClosureReview
 from msss_graphslam.core.graph.known_places import KNOWN_BETTER, hung_again
-from msss_graphslam.core.graph.odometry_chain import OdometryChain
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["CONTRADICTS", "WITHDRAWN", "GuardedBackEnd"]
-
-CONTRADICTS = "contradicts_odometry"
-"""Refusal of a closure that the way between its keyframes excludes."""
 
 WITHDRAWN = "withdrawn"
 """Refusal of a closure that the graph has come to contradict; the graph may take it back."""
@@ -34,7 +30,7 @@ class GuardedBackEnd:
         """Begin empty; ``guards`` also has the matches of a scan share their weight."""
         self._bound = config.contradiction if guards else 0.0
         self._back_end = BackEnd(config, divides=guards)
-        self._chain = OdometryChain()
+        self._gate = ClosureGate(self._bound)
         self._review = ClosureReview(self._bound)
         self._watched: list[int] = []
         self.tried: list[Constraint] = []
@@ -50,28 +46,22 @@ class GuardedBackEnd:
             answer = self._back_end.take(pose, tried)
             self.tried += tried
             return answer
-        if tried:
-            self._chain.append(_consecutive(tried, len(self._chain)))
+        before = len(self._gate)
         try:
-            judged = [self._judged(edge) for edge in tried]
+            judged = self._gate.pass_through(tried) if tried else []
             if any(edge.refusal == CONTRADICTS for edge in judged):
                 judged = hung_again(judged)
             poses, covariance = self._back_end.take(pose, judged)
         except Exception:
-            self._chain.cut(len(self._chain) - bool(tried))
+            self._cut(before)
             raise
-        self._chain.cut(len(poses))
+        self._cut(len(poses))
         self._note(judged)
         return self._reviewed(poses, covariance)
 
-    def _judged(self, edge: Constraint) -> Constraint:
-        """Return the constraint, refused if it is a closure that odometry excludes."""
-        usable = not defect(edge, len(self._chain)) and edge.first < edge.second
-        if edge.kind is not ConstraintKind.LOOP or not edge.accepted or not usable:
-            return edge
-        distance = self._chain.squared_distance(edge, LAYOUT)
-        refusal = CONTRADICTS if distance > self._bound else ""
-        return replace(edge, refusal=refusal, figures={**edge.figures, "contradiction": distance})
+    def _cut(self, count: int) -> None:
+        if len(self._gate) > count:
+            self._gate.drop_newest()
 
     def _note(self, judged: Sequence[Constraint]) -> None:
         """Keep the constraints, and watch the closures among those that the graph has taken."""
@@ -82,7 +72,7 @@ class GuardedBackEnd:
         ]
         self.tried += judged
         self._watched += closures
-        self._review.add([self.tried[number] for number in closures])
+        self._review.add([self.tried[number] for number in closures], self._gate.slack)
 
     def _reviewed(self, poses: Array, covariance: Array) -> tuple[Array, Array]:
         verdict = self._review.judge(poses)
@@ -117,16 +107,3 @@ class GuardedBackEnd:
     def _set_refusal(self, number: int, refusal: str) -> None:
         place = self._watched[number]
         self.tried[place] = replace(self.tried[place], refusal=refusal)
-
-
-def _consecutive(tried: Sequence[Constraint], number: int) -> Constraint | None:
-    """Return the best edge from the keyframe before: the match, or else odometry."""
-    edges = [
-        edge
-        for edge in tried
-        if (edge.accepted or edge.refusal == KNOWN_BETTER)
-        and edge.kind is not ConstraintKind.LOOP
-        and (edge.first, edge.second) == (number - 1, number)
-        and not defect(edge, number + 1)
-    ]
-    return edges[-1] if edges else None
