@@ -155,14 +155,13 @@ class MotionFeedback:
     def _expected(self, noise: Array) -> tuple[Array, Array]:
         """Return the variances (3,) of that change, noise added, and the slow error's shares.
 
-        A share (3,) is that of the slow error in the variance times that of what a match has
-        taken of the doubt: along a bare wall it shows nothing but what was expected.
+        Along a bare wall a match is nothing but noise, and tells nothing of the slow error.
         """
         variances = np.diag(self._stationary)
         slow = np.minimum(variances, self._lasting.slow)
         drifting = 2.0 * (slow - self._kept_ahead() * variances)
         stated = np.maximum(drifting + 2.0 * (variances - slow) + noise, np.finfo(float).tiny)
-        return stated, self._learned() * np.maximum(drifting, 0.0) / stated
+        return stated, np.maximum(drifting, 0.0) / stated
 
     def update(self, offset: Array, covariance: Array) -> None:
         """Take in a twist error (3,) that a pair of keyframes showed, with its covariance.
