@@ -14,7 +14,7 @@ from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
 from msss_graphslam.core.scans.corrected_keyframes import corrected_keyframes
-from msss_graphslam.core.scans.motion_feedback import persistence_of
+from msss_graphslam.core.scans.persistence import persistence_of
 from msss_graphslam.core.scans.scan_correction import corrected_scans
 from msss_graphslam.core.smoothing.joint_pairs import first_reach, pairs_of
 from msss_graphslam.core.smoothing.joint_smoothing import Reach, Smoothed, smooth

@@ -8,7 +8,7 @@ import numpy as np
 
 from msss_graphslam.core.compounding import between, compose_jacobians, wrap_angle
 from msss_graphslam.core.scans.history import DeadReckoningHistory
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
 
 __all__ = ["OnlinePose"]

@@ -13,7 +13,7 @@ from msss_graphslam.core.online_pose import OnlinePose
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
 from msss_graphslam.core.reckoning.sequencing import Sequencer
-from msss_graphslam.core.scans.motion_feedback import persistence_of
+from msss_graphslam.core.scans.persistence import persistence_of
 from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Beam, Estimate, Measurement, Odometry, Scan, Stage
 

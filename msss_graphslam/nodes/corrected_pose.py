@@ -9,7 +9,7 @@ from math import dist
 import numpy as np
 
 from msss_graphslam.core.online_pose import OnlinePose
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
 from msss_graphslam.messages.link_decoding import StampedPose
 from msss_graphslam.messages.refusal import Refusal

@@ -4,7 +4,7 @@
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.reckoning.prompt_dead_reckoning import PromptDeadReckoning
-from msss_graphslam.core.scans.motion_feedback import persistence_of
+from msss_graphslam.core.scans.persistence import persistence_of
 from msss_graphslam.core.types import Beam, MapCorrection, Measurement, Odometry
 from msss_graphslam.messages import decoding, link_decoding, topics
 from msss_graphslam.messages.link_decoding import StampedPose

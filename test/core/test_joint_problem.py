@@ -8,7 +8,7 @@ import pytest
 from moving_scans import BASIN, moving_scans
 
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.smoothing import bent_scans, joint_problem
 from msss_graphslam.core.smoothing.bent_pair import Pairing, pairings
 from msss_graphslam.core.smoothing.bent_scan import BentScan, bend

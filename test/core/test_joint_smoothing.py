@@ -8,7 +8,7 @@ import pytest
 from moving_scans import BASIN, BLIND, CORRIDOR, moving_scans
 
 from msss_graphslam.core.compounding import between, wrap
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.smoothing.joint_smoothing import NARROWING, Reach, Smoothed, smooth
 from msss_graphslam.core.types import Array, Scan
 

@@ -181,3 +181,20 @@ def test_no_residual_at_all_is_finite() -> None:
     found = covariance(crossing(8), crossing(8), np.zeros(8))
     assert np.isfinite(found).all()
     assert np.linalg.eigvalsh(found)[0] > 0.0
+
+
+@pytest.mark.parametrize("likeness", [0.0, 0.3, 0.6])
+def test_what_the_fit_has_taken_for_motion_is_counted(likeness: float) -> None:
+    """A round of beams whose errors are alike: what residuals are left says less of it."""
+    rng, squares, stated = np.random.default_rng(5), [], []
+    bearings = np.linspace(0.0, 2.0 * np.pi, 140, endpoint=False)
+    normals = np.column_stack([np.cos(bearings), np.sin(bearings)])
+    for _ in range(300):
+        errors = rng.normal(size=140)
+        for number in range(1, 140):
+            errors[number] *= np.sqrt(1.0 - likeness**2)
+            errors[number] += likeness * errors[number - 1]
+        off = np.linalg.lstsq(normals, errors, rcond=None)[0]
+        squares.append(off**2)
+        stated.append(np.diag(covariance(normals, normals, errors - normals @ off))[:2])
+    assert 0.6 < np.mean(squares) / np.mean(stated) < 1.3

@@ -5,12 +5,8 @@ import pytest
 
 from msss_graphslam.config.groups import DeadReckoning
 from msss_graphslam.core.compounding import between, compose
-from msss_graphslam.core.scans.motion_feedback import (
-    MotionFeedback,
-    Persistence,
-    offset_motion,
-    persistence_of,
-)
+from msss_graphslam.core.scans.motion_feedback import MotionFeedback, offset_motion
+from msss_graphslam.core.scans.persistence import Persistence, persistence_of
 from msss_graphslam.core.types import Array
 
 TIME = 100.0

@@ -7,7 +7,7 @@ import pytest
 
 from msss_graphslam.core.compounding import between, compose, wrap
 from msss_graphslam.core.online_pose import OnlinePose, _drift_covariance
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.scans.scan_generation import motion_covariances
 from msss_graphslam.core.types import Array, MapCorrection, Odometry, TwistError
 

@@ -100,6 +100,21 @@ def test_a_corridor_is_known_across_and_not_along(seed: int) -> None:
     assert abs(error_of(result)[2]) < 0.01
 
 
+def test_points_better_than_stated_outweigh_a_wrong_guess() -> None:
+    """How large residuals are is told by themselves; a guess counts by its own covariance."""
+    first, second = pair(1)
+    vague = [
+        replace(scan, covariances=9.0 * scan.covariances, variances=9.0 * scan.variances)
+        for scan in (first, second)
+    ]
+    initial = DISPLACEMENT + np.array([0.1, -0.1, 0.03])
+    narrow = np.diag([0.1, 0.1, 0.03]) ** 2
+    sharp, told = (
+        match_lines(*scans, initial, narrow, CONFIG) for scans in ((first, second), vague)
+    )
+    np.testing.assert_allclose(told.relative_pose, sharp.relative_pose, atol=8e-3)
+
+
 def test_bare_walls_leave_the_guess_along_them() -> None:
     """Without noise nothing at all speaks of the motion along the walls."""
     x = np.arange(-10.0, 10.0, 0.1)

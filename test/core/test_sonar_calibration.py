@@ -5,7 +5,7 @@ import pytest
 from moving_scans import BASIN, moving_scans
 
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.smoothing.normal_equations import NormalEquations
 from msss_graphslam.core.smoothing.sonar_calibration import (
     OBSERVED,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from moving_scans import BASIN, BLIND, moving_scans
 
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.smoothing.normal_equations import NormalEquations
 from msss_graphslam.core.smoothing.twist_chain import TwistChain, durations_of
 from msss_graphslam.core.types import Array, Scan

@@ -23,7 +23,8 @@ from msss_graphslam.core.graph.turn_in_progress import previewed
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.matching.shape_matching import shape_descriptor
 from msss_graphslam.core.recipes import Recipe
-from msss_graphslam.core.scans.motion_feedback import MotionFeedback, persistence_of
+from msss_graphslam.core.scans.motion_feedback import MotionFeedback
+from msss_graphslam.core.scans.persistence import persistence_of
 from msss_graphslam.core.types import (
     Array,
     Constraint,

@@ -46,6 +46,8 @@ def match_in_rounds(
         # The rounds led astray, as where the vehicle began to turn and no gyro said so.
         constraint = max(accepted, key=lambda entry: entry.figures.get("overlap", 0.0))
         layout.learn(nodes[-2], nodes[-1], constraint)
+    if accepted:
+        layout.settle(nodes[-1])
     return layout.widened(constraint)
 
 

@@ -75,13 +75,13 @@ class ScanLayout:
         covariance, edge = (
             motion_covariances(motion, elapsed, _known(scan, error))[-1]
             + LEAST_VARIANCE * np.eye(3)
-            for error in (self.feedback.covariance, self.feedback.coherent())
+            for error in (self.feedback.guessed(), self.feedback.coherent())
         )
         return ReckonedStep(motion[-1], covariance, edge)
 
     def node(self, scan: Scan, covariance: Array) -> Node:
         """Return the newest keyframe: its scan laid out; ``covariance`` (3, 3) of its pose."""
-        laid_out = self._laid_out(scan)
+        laid_out = self._laid_out(scan, self.feedback.ahead().covariance)
         is_place = len(scan.body_points) >= NEIGHBOURS
         return Node(laid_out, self._prepare(laid_out), scan, covariance, is_place=is_place)
 
@@ -113,8 +113,11 @@ class ScanLayout:
         # Its error is that of the match, no other.
         delta = self._correct(reference, current, matched.relative_pose, np.zeros((3, 3)))
         self._take_in(reference.first_scan, delta, matched)
-        current.scan = self._laid_out(current.first_scan)
-        current.prepared = self._prepare(current.scan)
+        self._lay_out_newest(current, self.feedback.beside_match())
+
+    def settle(self, current: Node) -> None:
+        """State in the newest scan what its matches have left of its motion's error."""
+        self._lay_out_newest(current, self.feedback.after_match())
 
     def learn_twist(self, previous: Scan, scan: Scan, matched: Constraint) -> None:
         """Learn from a match of two first scans, without making them anew."""
@@ -136,10 +139,14 @@ class ScanLayout:
         beam_period = duration / len(scan.beam_stamps_ns)
         self.feedback.update(delta / beam_period, matched.covariance / duration**2)
 
-    def _laid_out(self, scan: Scan) -> Scan:
-        error = self.twist_error(scan)
-        motion = offset_motion(scan.motion, scan.beam_times[:-1], error.mean)
-        return lay_out(scan, motion, error.covariance)
+    def _lay_out_newest(self, current: Node, covariance: Array) -> None:
+        current.scan = self._laid_out(current.first_scan, covariance)
+        current.prepared = self._prepare(current.scan)
+
+    def _laid_out(self, scan: Scan, covariance: Array) -> Scan:
+        offset = self.feedback.ahead().mean
+        motion = offset_motion(scan.motion, scan.beam_times[:-1], offset)
+        return lay_out(scan, motion, _known(scan, covariance))
 
     def _correct(self, reference: Node, following: Node, target: Array, error: Array) -> Array:
         """Return delta X of equation 14."""

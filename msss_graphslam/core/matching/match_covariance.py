@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The covariance of a point-to-line match.
 
-Three things keep the inverse Hessian from being it: normals are noisy, and their scatter looks
-like structure along a bare wall; neighbouring residuals have errors in common; and the motion
-within a scan is wrong for all its points together, which no number of points averages out.
+Four things keep the inverse Hessian from being it: normals are noisy, and their scatter looks
+like structure along a bare wall; neighbouring residuals have errors in common; the motion within a
+scan is wrong for all its points together, which no number of points averages out; and the first
+guess has a share in the answer, which is no measurement of it.
 """
 
 # Deviation: not in the paper, whose spIC has the covariance of independent points.
@@ -16,7 +17,7 @@ import numpy as np
 from msss_graphslam.core.matching.line_features import NEIGHBOURS
 from msss_graphslam.core.types import Array
 
-__all__ = ["WIDEST", "MatchedPairs", "match_covariance"]
+__all__ = ["WIDEST", "MatchedPairs", "match_covariance", "match_information"]
 
 WIDEST = 1e4
 """Variance [m^2, rad^2] that stands for a direction of which the scans say nothing."""
@@ -26,6 +27,9 @@ LEAST_SCALE = 0.1
 
 SURE = 2.0
 """Structure counts where it exceeds that of bare walls by so many standard deviations of it."""
+
+LEAST_LEFT = 0.5
+"""With fewer pairs than take half of what they have in common, the residuals say no more of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +51,50 @@ class MatchedPairs:
 
 
 def match_covariance(forward: MatchedPairs, backward: MatchedPairs, turned: Array) -> Array:
-    """Return the covariance (3, 3) of the mean of both ways.
+    """Return the covariance (3, 3) of the mean of both ways; see ``match_information``."""
+    return match_information(forward, backward, turned).covariance
+
+
+@dataclass(frozen=True, slots=True)
+class MatchInformation:
+    """What both scans say of the pose beside the first guess.
+
+    ``hessian`` (3, 3) is what the alignment has weighed the pairs with, by their stated
+    deviations; ``information`` (3, 3) what they say in truth; ``pull`` (3, 6) is what units of
+    both twist errors add to the gradient; ``prior`` (3, 3) the information of the guess.
+    """
+
+    hessian: Array
+    information: Array
+    pull: Array
+    prior: Array
+
+    @property
+    def covariance(self) -> Array:
+        """The covariance (3, 3) of the pose as ``freed``."""
+        noise = np.linalg.inv(self.information + np.eye(3) / WIDEST)
+        drag = -self._answer() @ self.pull
+        return np.asarray(0.5 * (noise + noise.T) + drag @ drag.T)
+
+    def freed(self, shift: Array) -> Array:
+        """Return how far (3,) the scans lie from the guess, aligned at ``shift`` (3,) from it.
+
+        In the alignment the guess weighs what the points' stated deviations give it. The points of
+        a whole wall are better than that, and would hand back the guess as if they had seen it;
+        along a bare wall they seem to see what is their noise.
+        """
+        return np.asarray(self._answer() @ (self.hessian + self.prior) @ shift)
+
+    def _answer(self) -> Array:
+        """Return what turns a gradient into a shift: as the pairs ask, held as the guess is."""
+        asked = np.linalg.inv(self.hessian + np.eye(3) / WIDEST)
+        return np.asarray(np.linalg.solve(self.information + self.prior, self.information @ asked))
+
+
+def match_information(
+    forward: MatchedPairs, backward: MatchedPairs, turned: Array
+) -> MatchInformation:
+    """Return what both ways say together.
 
     ``turned`` (3, 3) derives the pose by the one that ``backward`` has found, its inverse. Both
     ways have the same noise, each scan being the points once: together they say what one says.
@@ -58,26 +105,29 @@ def match_covariance(forward: MatchedPairs, backward: MatchedPairs, turned: Arra
     pretended = 0.5 * (there.pretended + back.T @ here.pretended @ back)
     count = 0.5 * (len(forward.residuals) + len(backward.residuals))
     structure = _structure(found, pretended, count)
-    variance = 0.5 * (there.variance + here.variance)
-    noise = np.linalg.inv(structure / variance + np.eye(3) / WIDEST)
-    # The scan that moves the one way is the lines of the other.
-    drag = 0.5 * (there.drag + turned @ np.roll(here.drag, 3, axis=1))
-    return np.asarray(0.5 * (noise + noise.T) + drag @ drag.T)
+    return MatchInformation(
+        hessian=0.5 * (there.hessian + back.T @ here.hessian @ back),
+        information=structure / (0.5 * (there.variance + here.variance)),
+        # The scan that moves the one way is the lines of the other.
+        pull=0.5 * (there.pull + back.T @ np.roll(here.pull, 3, axis=1)),
+        prior=forward.prior,
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class _Sums:
     """What the pairs of one way come to.
 
-    ``found`` (3, 3) is the mean information of the lines' and the points' normals, ``pretended``
-    (3, 3) the part of it that is noise: what both scans' normals differ by. ``drag`` (3, 6) is how
-    far units of both twist errors draw the pose along, ``variance`` that of a normalised residual
-    times how many of them say the same.
+    ``hessian`` (3, 3) is the information of the lines' normals, ``found`` (3, 3) the mean of it
+    and that of the points' normals, ``pretended`` (3, 3) the part that is noise: what both scans'
+    normals differ by. ``pull`` (3, 6) is what units of both twist errors add to the gradient,
+    ``variance`` that of a normalised residual times how many of them say the same.
     """
 
+    hessian: Array
     found: Array
     pretended: Array
-    drag: Array
+    pull: Array
     variance: float
 
 
@@ -88,10 +138,11 @@ def _summed(pairs: MatchedPairs) -> _Sums:
     size = np.abs(pairs.residuals)
     scale = 1.4826 * float(np.partition(size, len(size) // 2)[len(size) // 2])
     return _Sums(
+        hessian=hessian,
         found=0.5 * (hessian + twin),
         pretended=0.5 * (hessian + twin - mixed - mixed.T),
-        drag=np.asarray(-np.linalg.solve(hessian + pairs.prior, products[:3, 6:])),
-        variance=max(scale, LEAST_SCALE) ** 2 * _repetition(pairs.weights * pairs.residuals),
+        pull=products[:3, 6:],
+        variance=max(scale, LEAST_SCALE) ** 2 * _repetition(pairs, hessian + pairs.prior),
     )
 
 
@@ -109,15 +160,22 @@ def _structure(found: Array, pretended: Array, count: float) -> Array:
     return np.asarray(kept * np.maximum(values, 0.0) @ kept.T)
 
 
-def _repetition(errors: Array) -> float:
-    """Return how many neighbouring errors (n,) say the same: the sum of their autocorrelation.
+def _repetition(pairs: MatchedPairs, hessian: Array) -> float:
+    """Return how many neighbouring errors say the same: the sum of their autocorrelation.
 
-    A point is part of NEIGHBOURS lines, and lies in several beams' width.
+    A point is part of NEIGHBOURS lines, and lies in several beams' width. What errors have in
+    common in the directions of the pose is what the fit has taken for motion: the residuals have
+    lost the share ``taken`` of what they would say the same. Sum under Bartlett's window.
     """
-    square = float(errors @ errors)
+    errors = pairs.weights * pairs.residuals
+    rows = pairs.jacobian * np.sqrt(pairs.weights)[:, None]
+    count, square = len(errors), float(errors @ errors)
     if square == 0.0:
         return 1.0
-    together = 0.0
-    for lag in range(1, min(NEIGHBOURS, len(errors) - 1) + 1):
-        together += (1.0 - lag / (NEIGHBOURS + 1.0)) * float(errors[lag:] @ errors[:-lag])
-    return max(1.0 + 2.0 * together / square, 1.0)
+    together, seen = 1.0, rows.T @ rows
+    for lag in range(1, min(NEIGHBOURS, count - 1) + 1):
+        share = 2.0 * (1.0 - lag / (NEIGHBOURS + 1.0))
+        together += share * float(errors[lag:] @ errors[:-lag]) / square
+        seen += share * (rows[lag:].T @ rows[:-lag])
+    taken = float(np.trace(np.linalg.solve(hessian, seen))) / count
+    return max(together / max(1.0 - taken, LEAST_LEFT), 1.0)

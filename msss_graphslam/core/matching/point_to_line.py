@@ -15,7 +15,7 @@ from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import inverse, inverse_jacobian, wrap
 from msss_graphslam.core.matching.alignment import Alignment
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.matching.match_covariance import WIDEST, match_covariance
+from msss_graphslam.core.matching.match_covariance import WIDEST, match_information
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.types import Array
 
@@ -53,7 +53,7 @@ def match_lines(
     difference = inverse(backward) - forward
     difference[2] = wrap(difference[2])
     pose = forward + 0.5 * difference
-    covariance = _covariance(alignment)
+    freed, covariance = _freed(alignment, initial, pose)
     observed = _observed(difference, covariance, config)
     figures = {
         "overlap": float(alignment.overlaps.min()),
@@ -62,15 +62,20 @@ def match_lines(
         "disagreement_rad": float(abs(observed[2])),
         "shift": _shift(initial, pose, initial_covariance),
     }
-    return MatchResult(pose, covariance, _refusal(figures, config), figures)
+    return MatchResult(freed, covariance, _refusal(figures, config), figures)
 
 
-def _covariance(alignment: Alignment) -> Array:
-    """Return the covariance (3, 3) of the mean of both ways."""
+def _freed(alignment: Alignment, initial: Array, pose: Array) -> tuple[Array, Array]:
+    """Return what the scans say of the pose (3,) beside the first guess, and its covariance."""
     pairs = alignment.pairs()
     if pairs is None:
-        return WIDEST * np.eye(3)
-    return match_covariance(*pairs, inverse_jacobian(alignment.poses[1]))
+        return pose, WIDEST * np.eye(3)
+    said = match_information(*pairs, inverse_jacobian(alignment.poses[1]))
+    shift = pose - initial
+    shift[2] = wrap(shift[2])
+    freed = initial + said.freed(shift)
+    freed[2] = wrap(freed[2])
+    return freed, said.covariance
 
 
 def _observed(difference: Array, covariance: Array, config: Matching) -> Array:

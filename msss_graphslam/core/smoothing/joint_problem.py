@@ -13,7 +13,7 @@ from msss_graphslam.core.compounding import (
     inverse,
     inverse_jacobian,
 )
-from msss_graphslam.core.scans.motion_feedback import Persistence
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.smoothing.bent_pair import Pairing, pairings
 from msss_graphslam.core.smoothing.bent_scans import BentScans, applied, change_of
 from msss_graphslam.core.smoothing.joint_pairs import weights_of

@@ -14,7 +14,8 @@ import numpy as np
 
 from msss_graphslam.core.compounding import compose
 from msss_graphslam.core.graph.back_end import LAUNCH_VARIANCE
-from msss_graphslam.core.scans.motion_feedback import Persistence, offset_motion
+from msss_graphslam.core.scans.motion_feedback import offset_motion
+from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.scans.scan_generation import reckoned_motion
 from msss_graphslam.core.smoothing.joint_problem import JointProblem
 from msss_graphslam.core.types import Array, Scan, SonarCalibration
