@@ -18,6 +18,9 @@ __all__ = ["MotionFeedback", "Persistence", "offset_motion", "persistence_of"]
 SHORT = 1e-3
 """Share of the correlation time in which an error stays what it is."""
 
+MEMORY = 10.0
+"""So many turns show how unsteady the speed is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Persistence:
@@ -86,12 +89,18 @@ class MotionFeedback:
         self._stationary = np.zeros((3, 3))
         self._interval = 0.0
         self._shared = np.zeros((3, 3))
+        self._unsteadiness = np.ones(3)
+        self._surprise = np.zeros(3)
 
     def predict(self, interval: float, stationary: Array) -> None:
         """Let ``interval`` [s] pass; ``stationary`` (3, 3) is the error's a-priori covariance."""
+        self._learn_unsteadiness()
         kept = np.zeros(3)
         if self._predicted:
             kept = self._persistence.over(interval, stationary)
+        growth = np.sqrt(self._unsteadiness)
+        self._stated, stationary = stationary, np.outer(growth, growth) * stationary
+        if self._predicted:
             before = self._predicted[1] + np.finfo(float).tiny * np.eye(3)
             still_open = np.linalg.solve(before, self.covariance)
             shared = self._shared @ still_open + self._interval * self.covariance
@@ -129,7 +138,7 @@ class MotionFeedback:
     def _kept_ahead(self) -> Array:
         if not self._stationary.any():
             return np.zeros(3)
-        return self._persistence.over(self._interval, self._stationary)
+        return self._persistence.over(self._interval, self._stated)
 
     def update(self, offset: Array, covariance: Array) -> None:
         """Take in a twist error (3,) that a pair of keyframes showed, with its covariance.
@@ -143,6 +152,15 @@ class MotionFeedback:
         self.offset = predicted + gain @ (offset - predicted)
         updated = (np.eye(3) - gain) @ spread
         self.covariance = 0.5 * (updated + updated.T)
+        ratio = (offset - predicted) ** 2 / np.diag(spread + covariance)
+        self._surprise = np.diag(spread) / np.diag(spread + covariance) * (ratio - 1.0)
+
+    def _learn_unsteadiness(self) -> None:
+        """Take in by how much the last turn surprised, as far as its match could tell."""
+        factor = 1.0 + self._surprise / MEMORY
+        factor[2] = 1.0
+        self._unsteadiness = np.maximum(self._unsteadiness * factor, 1.0)
+        self._surprise = np.zeros(3)
 
 
 def offset_motion(motion: Array, elapsed: Array, offset: Array) -> Array:
