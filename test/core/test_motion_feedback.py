@@ -59,7 +59,7 @@ def test_a_sharp_word_is_believed_and_a_dull_one_is_not() -> None:
 def test_what_was_learned_fades_with_the_correlation_time() -> None:
     feedback = MotionFeedback(SLOW)
     feedback.predict(10.0, STATIONARY)
-    feedback.update(np.array([0.05, 0.0, 0.0]), 1e-12 * np.eye(3))
+    feedback.update(np.array([0.025, 0.0, 0.0]), 1e-12 * np.eye(3))
     learned = feedback.offset[0]
     feedback.predict(TIME, STATIONARY)
     np.testing.assert_allclose(feedback.offset[0], learned * LIKE)
@@ -71,7 +71,7 @@ def test_what_was_learned_fades_with_the_correlation_time() -> None:
 def test_what_is_new_in_every_turn_does_not_persist() -> None:
     feedback = MotionFeedback(Persistence(TIME, np.array([0.03**2, 0.005**2, 0.0])))
     feedback.predict(10.0, STATIONARY)
-    seen = np.array([0.05, 0.02, 0.003])
+    seen = np.array([0.025, 0.008, 0.003])
     feedback.update(seen, 1e-12 * np.eye(3))
     feedback.predict(TIME, STATIONARY)
     kept = LIKE * np.array([1.0, 0.25, 0.0])
@@ -104,6 +104,61 @@ def test_many_words_converge_on_a_constant_error() -> None:
         feedback.update(error + doubt @ rng.normal(size=3), doubt**2)
     np.testing.assert_allclose(feedback.offset, error, atol=0.002)
     assert np.linalg.eigvalsh(feedback.covariance)[0] > 0.0
+
+
+def surprised(times: float, turns: int, doubt: float = 1e-3) -> MotionFeedback:
+    """A feedback after turns whose twist errors are so many deviations off what was expected."""
+    feedback, signs = MotionFeedback(SLOW), np.random.default_rng(0).choice([-1.0, 1.0], turns)
+    for sign in signs:
+        feedback.predict(10.0, STATIONARY)
+        spread = feedback.covariance + doubt**2 * np.eye(3)
+        off = times * sign * np.sqrt(np.diag(spread))
+        feedback.update(feedback.offset + off, doubt**2 * np.eye(3))
+    feedback.predict(10.0, STATIONARY)
+    return feedback
+
+
+def test_a_speed_that_surprises_is_taken_for_more_unsteady() -> None:
+    feedback = surprised(2.0, 5)
+    assert (feedback.unsteadiness[:2] > 2.0).all()
+    assert feedback.unsteadiness[2] == 1.0
+    calm = surprised(1.0, 5)
+    grown = np.diag(feedback.covariance)[:2] / np.diag(calm.covariance)[:2]
+    assert (grown > 1.5).all()
+
+
+@pytest.mark.parametrize("times", [0.0, 0.5, 1.0])
+def test_a_speed_as_steady_as_stated_leaves_what_is_stated(times: float) -> None:
+    np.testing.assert_allclose(surprised(times, 30).unsteadiness, np.ones(3))
+
+
+def test_unsteadiness_ends_when_the_surprises_do() -> None:
+    feedback = surprised(2.0, 5)
+    for _ in range(60):
+        feedback.predict(10.0, STATIONARY)
+        feedback.update(feedback.offset, 1e-6 * np.eye(3))
+    np.testing.assert_allclose(feedback.unsteadiness, np.ones(3), atol=0.05)
+
+
+def test_turns_that_show_nothing_say_nothing_of_unsteadiness() -> None:
+    assert (surprised(3.0, 10, doubt=30.0).unsteadiness < 1.001).all()
+
+
+def test_what_persists_does_not_depend_on_unsteadiness() -> None:
+    feedback = surprised(2.0, 5)
+    before = feedback.offset
+    feedback.predict(TIME, STATIONARY)
+    np.testing.assert_allclose(feedback.offset, LIKE * before)
+
+
+def test_a_match_that_takes_the_place_of_another_surprises_once() -> None:
+    feedback, once = MotionFeedback(SLOW), MotionFeedback(SLOW)
+    for each, words in ((feedback, 4), (once, 1)):
+        each.predict(10.0, STATIONARY)
+        for _ in range(words):
+            each.update(np.array([0.06, 0.0, 0.0]), 1e-6 * np.eye(3))
+        each.predict(10.0, STATIONARY)
+    np.testing.assert_array_equal(feedback.unsteadiness, once.unsteadiness)
 
 
 def winding(count: int) -> tuple[Array, Array]:
@@ -175,16 +230,18 @@ def test_an_instant_has_the_error_of_its_beginning() -> None:
         np.testing.assert_allclose(SLOW.mean_over(seconds, spread), spread, rtol=0.1, atol=1e-6)
 
 
-def test_the_turn_ahead_is_less_known_than_the_one_that_was_seen() -> None:
+@pytest.mark.parametrize("seen", [0.02, 0.06])
+def test_the_turn_ahead_is_less_known_than_the_one_that_was_seen(seen: float) -> None:
     feedback = MotionFeedback(SLOW)
     assert not feedback.ahead().covariance.any()
     feedback.predict(10.0, STATIONARY)
-    feedback.update(np.array([0.04, 0.0, 0.0]), 1e-8 * np.eye(3))
+    feedback.update(np.array([seen, 0.0, 0.0]), 1e-8 * np.eye(3))
     ahead = feedback.ahead()
     feedback.predict(10.0, STATIONARY)
     np.testing.assert_allclose(ahead.mean, feedback.offset)
     np.testing.assert_allclose(ahead.covariance, feedback.covariance)
-    assert 0.1 < ahead.covariance[0, 0] / STATIONARY[0, 0] < 0.15
+    grown = STATIONARY[0, 0] * feedback.unsteadiness[0]
+    assert 0.1 < ahead.covariance[0, 0] / grown < 0.15
 
 
 @pytest.mark.parametrize(("deviation", "share"), [(1e-6, 0.936), (1e3, 0.0)])

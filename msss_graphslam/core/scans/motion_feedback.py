@@ -19,7 +19,9 @@ SHORT = 1e-3
 """Share of the correlation time in which an error stays what it is."""
 
 MEMORY = 10.0
-"""So many turns show how unsteady the speed is."""
+"""Turns that show how unsteady the speed is: few enough to follow it, enough to average."""
+
+_VELOCITY = np.array([1.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,42 +80,44 @@ class MotionFeedback:
     """Kalman filter of the dead reckoning's twist error: surge, sway [m/s], yaw rate [rad/s].
 
     The error is a Gauss-Markov process with the given persistence; its stationary covariance is
-    what dead reckoning says of itself.
+    what dead reckoning says of itself, or more: where turn after turn shows a speed that changes
+    by more than that, its variances grow by ``unsteadiness`` (3,), never less than 1.
     """
+
+    # What dead reckoning says is a parameter, and how unsteady a vehicle is nobody knows before.
+    # Too small, it makes good matches lie too far from their guess, and what they show is lost.
 
     def __init__(self, persistence: Persistence) -> None:
         self._persistence = persistence
         self.offset = np.zeros(3)
         self.covariance = np.zeros((3, 3))
         self._predicted: tuple[Array, Array] | None = None
-        self._stationary = np.zeros((3, 3))
+        self._stated = np.zeros((3, 3))
         self._interval = 0.0
         self._shared = np.zeros((3, 3))
-        self._unsteadiness = np.ones(3)
-        self._surprise = np.zeros(3)
+        self.unsteadiness = self._unsteady_before = np.ones(3)
 
     def predict(self, interval: float, stationary: Array) -> None:
         """Let ``interval`` [s] pass; ``stationary`` (3, 3) is the error's a-priori covariance."""
-        self._learn_unsteadiness()
         kept = np.zeros(3)
         if self._predicted:
             kept = self._persistence.over(interval, stationary)
-        growth = np.sqrt(self._unsteadiness)
-        self._stated, stationary = stationary, np.outer(growth, growth) * stationary
-        if self._predicted:
             before = self._predicted[1] + np.finfo(float).tiny * np.eye(3)
             still_open = np.linalg.solve(before, self.covariance)
             shared = self._shared @ still_open + self._interval * self.covariance
             self._shared = shared * kept
+        self._stated, self._interval = stationary, interval
+        self._unsteady_before = self.unsteadiness
+        stationary = self._stationary()
         self.offset = kept * self.offset
         self.covariance = stationary + np.outer(kept, kept) * (self.covariance - stationary)
         self._predicted = self.offset, self.covariance
-        self._stationary, self._interval = stationary, interval
 
     def ahead(self) -> TwistError:
         """Return the error to be expected in the turn after the one that was predicted."""
         kept = self._kept_ahead()
-        grown = self._stationary + np.outer(kept, kept) * (self.covariance - self._stationary)
+        stationary = self._stationary()
+        grown = stationary + np.outer(kept, kept) * (self.covariance - stationary)
         return TwistError(kept * self.offset, grown)
 
     def followed(self) -> Array:
@@ -136,7 +140,7 @@ class MotionFeedback:
         return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
 
     def _kept_ahead(self) -> Array:
-        if not self._stationary.any():
+        if not self._stated.any():
             return np.zeros(3)
         return self._persistence.over(self._interval, self._stated)
 
@@ -152,15 +156,23 @@ class MotionFeedback:
         self.offset = predicted + gain @ (offset - predicted)
         updated = (np.eye(3) - gain) @ spread
         self.covariance = 0.5 * (updated + updated.T)
-        ratio = (offset - predicted) ** 2 / np.diag(spread + covariance)
-        self._surprise = np.diag(spread) / np.diag(spread + covariance) * (ratio - 1.0)
+        self._learn_unsteadiness(offset - predicted, np.diag(spread), np.diag(covariance))
 
-    def _learn_unsteadiness(self) -> None:
-        """Take in by how much the last turn surprised, as far as its match could tell."""
-        factor = 1.0 + self._surprise / MEMORY
-        factor[2] = 1.0
-        self._unsteadiness = np.maximum(self._unsteadiness * factor, 1.0)
-        self._surprise = np.zeros(3)
+    def _learn_unsteadiness(self, surprise: Array, expected: Array, doubt: Array) -> None:
+        """Take in by how much an error (3,) surprised, as far as its match could tell.
+
+        ``expected`` (3,) are its variances before the match, ``doubt`` (3,) those of the match.
+        The yaw rate's error is that of a gyro, which has no such moods.
+        """
+        ratio = surprise**2 / (expected + doubt)
+        told = _VELOCITY * expected / (expected + doubt)
+        grown = self._unsteady_before * (1.0 + told * (ratio - 1.0) / MEMORY)
+        self.unsteadiness = np.maximum(grown, 1.0)
+
+    def _stationary(self) -> Array:
+        """Return the error's covariance (3, 3) of which nothing is known."""
+        growth = np.sqrt(self.unsteadiness)
+        return np.asarray(np.outer(growth, growth) * self._stated)
 
 
 def offset_motion(motion: Array, elapsed: Array, offset: Array) -> Array:

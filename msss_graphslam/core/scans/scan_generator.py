@@ -14,7 +14,7 @@ from msss_graphslam.core.scans.history import DeadReckoningHistory, Turn, TurnDe
 from msss_graphslam.core.scans.scan_generation import generate_scan
 from msss_graphslam.core.types import Beam, Odometry, Reading, Scan, Stage
 
-__all__ = ["BLOCK", "PART", "ScanGenerator"]
+__all__ = ["BLOCK", "EARLY_PARTS", "PART", "ScanGenerator"]
 
 BLOCK = 32
 """So many beams are segmented at once, which takes half the time of one by one."""
@@ -24,6 +24,13 @@ PART = 2.0 * np.pi / 3.0
 
 A scan tells of its middle. With a part after a third of a turn, each of the two is at most 5/6 of
 a turn old when the other comes; without it, a scan is 3/2 of a turn old when the next comes.
+"""
+
+EARLY_PARTS = (*(PART * np.arange(1, 9) / 8.0).tolist(), 2.0 * PART)
+"""The same [rad] for the first turn that has another before it: nothing has shown the speed yet.
+
+The pose is off by a whole turn's way at the assumed speed. The first wall that the head meets
+again, some 15 deg on, shows that part of it which is across the wall.
 """
 
 
@@ -56,7 +63,7 @@ class ScanGenerator:
         self._unread: list[tuple[Beam, _Heard]] = []
         self._waiting: list[Turn[Reading]] = []
         self._part: Turn[_Heard] | None = None
-        self._was_cut = False
+        self._parts_cut = self._turns_in_a_row = 0
         self._history = DeadReckoningHistory()
 
     @property
@@ -75,11 +82,11 @@ class ScanGenerator:
         turn = self._turns.add(heard)
         if turn is not None:
             self._waiting.append(self._read(turn))
-            self._part, self._was_cut = None, False
+            self._part, self._parts_cut = None, 0
+            self._turns_in_a_row = self._turns_in_a_row + 1 if turn.usable else 0
         elif len(self._unread) == BLOCK:
             self._segment()
-        if not self._was_cut and self._turns.swept >= PART:
-            self._part, self._was_cut = self._turns.so_far(), True
+        self._cut_part()
         return self._covered()
 
     def add_odometry(self, odometry: Odometry) -> list[Scan]:
@@ -88,9 +95,9 @@ class ScanGenerator:
         return self._covered()
 
     def part(self) -> Scan | None:
-        """Return the first third of the turn in progress, once, when the odometry covers it.
+        """Return the newest part of the turn in progress, once, when the odometry covers it.
 
-        Its beams come again in the scan of the whole turn.
+        It begins with the turn. Its beams come again in later parts and in the whole turn's scan.
         """
         part = self._part
         if part is None or self._waiting or not self._history.covers(part.end_ns):
@@ -108,6 +115,13 @@ class ScanGenerator:
         if self._history.latest is None:
             return []
         return [self._generate(turn) for turn in waiting]
+
+    def _cut_part(self) -> None:
+        """Note what has been heard of the turn in progress, if a part of it is due."""
+        due = EARLY_PARTS if self._turns_in_a_row == 1 else (PART,)
+        while self._parts_cut < len(due) and self._turns.swept >= due[self._parts_cut]:
+            self._part = self._turns.so_far()
+            self._parts_cut += 1
 
     def _segment(self) -> None:
         """Read the beams that wait for it, and let go of them."""
