@@ -11,8 +11,9 @@ from small_mission import seconds_of, until
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
-from msss_graphslam.core.scans.scan_generator import EARLY_PARTS, PART, ScanGenerator
-from msss_graphslam.core.types import Beam, Odometry, Scan
+from msss_graphslam.core.scans import scan_generator
+from msss_graphslam.core.scans.scan_generator import EARLY_PARTS, PART, ScanGenerator, around
+from msss_graphslam.core.types import Beam, Odometry, Reading, Scan
 
 CONFIGURATION = Configuration()
 DURATION = 35.0
@@ -227,6 +228,41 @@ def test_a_part_is_the_beginning_of_its_turn_and_ends_at_its_third(way: float) -
             assert swept[-2] < angle
             assert swept[-1] >= angle - 1e-9
             assert not part.complete
+
+
+@pytest.mark.parametrize("lacking", [0, 1])
+def test_a_part_that_shows_nothing_is_followed_by_another(
+    lacking: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def of_turn(number: int) -> list[Scan]:
+        found, scans = parts(by_stamp([*beams(), *odometry()]))
+        return [part for part in found if part.stamp_ns == scans[number].stamp_ns]
+
+    (third,) = of_turn(2)
+    monkeypatch.setattr(scan_generator, "TELLING", len(third.points) + lacking)
+    swept = [len(part.beam_stamps_ns) for part in of_turn(2)]
+    assert len(swept) == 1 + lacking
+    assert swept[-1] == pytest.approx((1 + lacking) * len(third.beam_stamps_ns), abs=2)
+
+
+def reading(number: int, bearing: float) -> Reading:
+    return Reading(number, bearing, np.empty(0), np.empty(0), np.empty(0), 20.0)
+
+
+def test_behind_a_part_comes_the_turn_before_where_the_part_has_not_looked() -> None:
+    before = [reading(number, 0.1 * number) for number in range(62)]
+    part = [reading(100 + number, 6.2 + 0.1 * number) for number in range(3)]
+    together = around(part, before)
+    assert [one.stamp_ns for one in together] == [100, 101, 102, *range(3, 62)]
+    assert around(part, []) == part
+    assert around([], before) == []
+
+
+def test_behind_a_sweep_s_part_comes_the_sweep_back() -> None:
+    before = [reading(number, 0.1 * number) for number in range(20)]
+    part = [reading(100 + number, 1.9 - 0.1 * number) for number in range(3)]
+    together = around(part, before)
+    assert [one.stamp_ns for one in together] == [100, 101, 102, *range(16, -1, -1)]
 
 
 def test_early_parts_show_the_first_wall_seen_again() -> None:
