@@ -35,6 +35,7 @@ class Pipeline:
         self._sequencer = Sequencer(sensors.reorder_window, sensors.patience, refused)
         self._dead_reckoning = DeadReckoning(configuration.dead_reckoning, refused)
         self._scans = ScanGenerator(configuration, refused, stage)
+        self._previews = recipe.goes_beyond
         self._slam = GraphSlam(configuration, recipe, stage)
         self._logbook = Logbook(configuration, recipe, stage)
         self._persistence = persistence_of(configuration.dead_reckoning)
@@ -64,7 +65,8 @@ class Pipeline:
         if isinstance(measurement, Beam):
             self._note_online(measurement.stamp_ns)
             self._add(self._scans.add_beam(measurement))  # lines 4, 7 and 8
-            self._preview()
+            if self._previews:
+                self._preview()
 
     def _reckon(self, odometry: list[Odometry]) -> None:
         for entry in odometry:

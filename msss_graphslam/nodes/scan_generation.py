@@ -156,7 +156,7 @@ class ScanGenerationNode(SlamNode):
         self._reckoned_at = monotonic()
 
     def _publish_part(self) -> None:
-        """Publish the first third of the turn in progress when it is there."""
+        """Publish the newest part of the turn in progress when it is there."""
         part = self._generator.part()
         if part is not None:
             self._scans.publish_part(part)

@@ -12,12 +12,12 @@ class WaitingPart:
 
     def __init__(self) -> None:
         self._part: Scan | None = None
-        self._ended_ns = self._taken_ns = -(2**62)
+        self._ended_ns = self._heard_ns = -(2**62)
 
     def add(self, part: Scan) -> None:
-        """Keep the part, in place of an earlier one; what was taken before is left out."""
-        if part.stamp_ns > self._taken_ns:
-            self._part = part
+        """Keep the part, in place of an earlier one; what was kept before is left out."""
+        if part.end_stamp_ns > self._heard_ns:
+            self._part, self._heard_ns = part, part.end_stamp_ns
 
     def follow(self, scan: Scan) -> None:
         """Note the newest whole turn."""
@@ -31,5 +31,5 @@ class WaitingPart:
         part = self._part
         if part is None or part.stamp_ns > self._ended_ns:
             return None
-        self._part, self._taken_ns = None, part.stamp_ns
+        self._part = None
         return part if part.stamp_ns == self._ended_ns else None

@@ -11,8 +11,9 @@ from small_mission import seconds_of, until
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.reckoning.dead_reckoning import DeadReckoning
-from msss_graphslam.core.scans.scan_generator import PART, ScanGenerator
-from msss_graphslam.core.types import Beam, Odometry, Scan
+from msss_graphslam.core.scans import scan_generator
+from msss_graphslam.core.scans.scan_generator import EARLY_PARTS, PART, ScanGenerator, around
+from msss_graphslam.core.types import Beam, Odometry, Reading, Scan
 
 CONFIGURATION = Configuration()
 DURATION = 35.0
@@ -210,17 +211,73 @@ def parts(entries: Iterable[Beam | Odometry]) -> tuple[list[Scan], list[Scan]]:
 def test_a_part_is_the_beginning_of_its_turn_and_ends_at_its_third(way: float) -> None:
     heard = [replace(beam, bearing=way * beam.bearing) for beam in beams()]
     found, scans = parts(by_stamp([*heard, *odometry()]))
-    assert 2 <= len(scans) - 1 <= len(found) <= len(scans)
-    for part, scan in zip(found, scans, strict=False):
-        count = len(part.beam_stamps_ns)
-        np.testing.assert_array_equal(part.beam_stamps_ns, scan.beam_stamps_ns[:count])
-        np.testing.assert_allclose(part.reckoned[:-1], scan.reckoned[:count], atol=1e-9)
-        bearings = {beam.stamp_ns: beam.bearing for beam in heard}
-        looked = np.unwrap([bearings[int(stamp)] for stamp in part.beam_stamps_ns])
-        swept = np.abs(looked - looked[0])
-        assert swept[-2] < PART - 1e-9
-        assert swept[-1] >= PART - 1e-9
-        assert not part.complete
+    bearings = {beam.stamp_ns: beam.bearing for beam in heard}
+    turns = {scan.stamp_ns: scan for scan in scans}
+    of_turns = {stamp_ns: [p for p in found if p.stamp_ns == stamp_ns] for stamp_ns in turns}
+    # The last turn may be too short for any.
+    expected = [[PART], list(EARLY_PARTS), [PART], [PART], [PART]]
+    for (stamp_ns, its_parts), due in zip(of_turns.items(), expected, strict=True):
+        assert len(its_parts) == len(due) or not turns[stamp_ns].complete
+        for part, angle in zip(its_parts, due, strict=False):
+            count = len(part.beam_stamps_ns)
+            scan = turns[stamp_ns]
+            np.testing.assert_array_equal(part.beam_stamps_ns, scan.beam_stamps_ns[:count])
+            np.testing.assert_allclose(part.reckoned[:-1], scan.reckoned[:count], atol=1e-9)
+            looked = np.unwrap([bearings[int(stamp)] for stamp in part.beam_stamps_ns])
+            swept = np.abs(looked - looked[0])
+            assert swept[-2] < angle
+            assert swept[-1] >= angle - 1e-9
+            assert not part.complete
+
+
+@pytest.mark.parametrize("lacking", [0, 1])
+def test_a_part_that_shows_nothing_is_followed_by_another(
+    lacking: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def of_turn(number: int) -> list[Scan]:
+        found, scans = parts(by_stamp([*beams(), *odometry()]))
+        return [part for part in found if part.stamp_ns == scans[number].stamp_ns]
+
+    (third,) = of_turn(2)
+    monkeypatch.setattr(scan_generator, "TELLING", len(third.points) + lacking)
+    swept = [len(part.beam_stamps_ns) for part in of_turn(2)]
+    assert len(swept) == 1 + lacking
+    assert swept[-1] == pytest.approx((1 + lacking) * len(third.beam_stamps_ns), abs=2)
+
+
+def reading(number: int, bearing: float) -> Reading:
+    return Reading(number, bearing, np.empty(0), np.empty(0), np.empty(0), 20.0)
+
+
+def test_behind_a_part_comes_the_turn_before_where_the_part_has_not_looked() -> None:
+    before = [reading(number, 0.1 * number) for number in range(62)]
+    part = [reading(100 + number, 6.2 + 0.1 * number) for number in range(3)]
+    together = around(part, before)
+    assert [one.stamp_ns for one in together] == [100, 101, 102, *range(3, 62)]
+    assert around(part, []) == part
+    assert around([], before) == []
+
+
+def test_behind_a_sweep_s_part_comes_the_sweep_back() -> None:
+    before = [reading(number, 0.1 * number) for number in range(20)]
+    part = [reading(100 + number, 1.9 - 0.1 * number) for number in range(3)]
+    together = around(part, before)
+    assert [one.stamp_ns for one in together] == [100, 101, 102, *range(16, -1, -1)]
+
+
+def test_early_parts_show_the_first_wall_seen_again() -> None:
+    assert EARLY_PARTS[0] == pytest.approx(np.radians(15.0))
+    assert PART in EARLY_PARTS
+    assert tuple(sorted(EARLY_PARTS)) == EARLY_PARTS
+
+
+def test_after_a_dropped_turn_nothing_has_shown_the_speed_either() -> None:
+    heard = [beam for beam in beams() if not 13.0 < seconds_of(beam) < 16.0]
+    found, scans = parts(by_stamp([*heard, *odometry()]))
+    counts = [sum(part.stamp_ns == scan.stamp_ns for part in found) for scan in scans]
+    dropped = [scan.usable for scan in scans].index(False)
+    assert counts[dropped + 1] == 1
+    assert counts[dropped + 2] > 1
 
 
 def test_parts_leave_the_scans_as_they_are() -> None:

@@ -3,6 +3,7 @@
 """A part of the turn in progress corrects the pose that is known online, and nothing else."""
 
 import pickle
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -14,9 +15,10 @@ from small_mission import position_errors, recorded, run
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.compounding import between, compose
 from msss_graphslam.core.graph.front_end import FrontEnd
-from msss_graphslam.core.graph.turn_in_progress import facing
+from msss_graphslam.core.graph.turn_in_progress import facing, previewed
 from msss_graphslam.core.pipeline import Pipeline
 from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.core.scans.scan_generator import ScanGenerator
 from msss_graphslam.core.types import Array, Estimate, Scan
 
 FULL = ESTIMATORS["full"]
@@ -96,11 +98,35 @@ def test_a_part_that_cannot_be_matched_corrects_nothing() -> None:
     assert front_end.preview(silent) is None
 
 
+@pytest.mark.parametrize(("strange", "as_a_part", "as_a_scan"), [(0, 1, 1), (1, 1, 0), (3, 0, 0)])
+def test_a_part_may_have_half_as_many_partners_as_a_scan(
+    strange: int, as_a_part: int, as_a_scan: int
+) -> None:
+    front_end, scans, _ = in_basin()
+    part = part_of(scans[1])
+    # Walls that the turn before has not seen, beyond those that it has.
+    far = np.where(np.arange(len(part.points)) * 8 < strange * len(part.points), 2.0, 1.0)
+    part = replace(part, body_points=far[:, None] * part.body_points)
+    whole = FULL.matcher(Configuration().matching)
+    strict = previewed(part, front_end.nodes[-1], front_end.poses[-1], front_end.layout, whole)
+    assert (strict is not None) == as_a_scan
+    assert (front_end.preview(part) is not None) == as_a_part
+
+
 def test_parts_of_turns_that_were_taken_are_late() -> None:
     front_end, scans, _ = in_basin()
     assert front_end.preview(part_of(scans[0])) is None
     front_end.add_scan(scans[1])
     assert front_end.preview(part_of(scans[1])) is None
+
+
+def test_the_first_wall_seen_again_corrects_across_it() -> None:
+    front_end, scans, _ = in_basin()
+    correction = front_end.preview(part_of(scans[1], BEAMS // 12))
+    assert correction is not None
+    small, large = np.sqrt(np.linalg.eigvalsh(correction.covariance[:2, :2]))
+    assert small < 0.15
+    assert large < 0.35
 
 
 @pytest.mark.parametrize("estimator", ["dead_reckoning", "uspic", "chen2015"])
@@ -141,6 +167,18 @@ def test_parts_shorten_the_jumps_and_leave_the_result(monkeypatch: pytest.Monkey
     error = position_errors(with_parts.online, truth).mean()
     assert error < 0.9 * position_errors(without.online, truth).mean()
     assert_same_bytes(replace(with_parts, online=without.online), without)
+
+
+@pytest.mark.parametrize(("estimator", "asked"), [("full", True), ("chen2015", False)])
+def test_only_who_previews_asks_for_parts(
+    estimator: str, asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[int] = []
+    monkeypatch.setattr(ScanGenerator, "part", lambda _: made.append(1))
+    pipeline = Pipeline(Configuration(), ESTIMATORS[estimator], Counter())
+    for measurement in recorded().measurements[:2000]:
+        pipeline.process(measurement)
+    assert bool(made) is asked
 
 
 def max_step(estimate: Estimate) -> float:

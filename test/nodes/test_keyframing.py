@@ -277,6 +277,16 @@ def test_a_part_that_comes_twice_is_looked_at_once() -> None:
     assert len(lonely.corrections) == 3
 
 
+def test_of_parts_of_one_turn_the_newest_counts() -> None:
+    stamp_ns = scans()[0].end_stamp_ns
+    early, late = [p for p in parts_of(recorded().measurements) if p.stamp_ns == stamp_ns][-2:]
+    assert early.end_stamp_ns < late.end_stamp_ns
+    lonely = looking(1)
+    for part, corrections in ((early, 2), (late, 3), (early, 3)):
+        lonely.front.add_part(part)
+        assert len(lonely.corrections) == corrections
+
+
 def test_parts_change_no_constraint() -> None:
     with_parts, without = looking(1), looking(1)
     for number in range(1, 4):

@@ -19,7 +19,7 @@ from msss_graphslam.core.graph.known_places import is_known, located_alone
 from msss_graphslam.core.graph.loop_search import as_in_the_paper, by_overlap, reach
 from msss_graphslam.core.graph.match_rounds import match_in_rounds
 from msss_graphslam.core.graph.scan_layout import ReckonedStep, ScanLayout
-from msss_graphslam.core.graph.turn_in_progress import previewed
+from msss_graphslam.core.graph.turn_in_progress import lenient, previewed
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.matching.shape_matching import shape_descriptor
 from msss_graphslam.core.recipes import Recipe
@@ -53,6 +53,9 @@ class FrontEnd:
         self._compares_shapes = recipe.closes_loops and not recipe.goes_beyond
         self._stage = stage
         self.matcher = recipe.matcher(configuration.matching) if recipe.matcher else None
+        self._part_matcher = None
+        if recipe.matcher and recipe.goes_beyond:
+            self._part_matcher = recipe.matcher(lenient(configuration.matching))
         feedback = MotionFeedback(persistence_of(configuration.dead_reckoning))
         prepare = self.matcher.prepare if self.matcher else lambda _: None
         self.layout = ScanLayout(feedback, recipe.solver, prepare)
@@ -107,9 +110,9 @@ class FrontEnd:
 
         None where the part does not tell; nothing changes here.
         """
-        if not self.nodes or self.matcher is None or not self._recipe.goes_beyond:
+        if not self.nodes or self._part_matcher is None:
             return None
-        return previewed(part, self.nodes[-1], self.poses[-1], self.layout, self.matcher)
+        return previewed(part, self.nodes[-1], self.poses[-1], self.layout, self._part_matcher)
 
     def report(self, tried: Sequence[Constraint]) -> KeyframeReport:
         """Return what the back end needs of the newest keyframe, whose constraints were tried."""

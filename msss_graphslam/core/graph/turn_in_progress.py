@@ -3,13 +3,14 @@
 """Where the vehicle is, by the part of a turn that has been heard so far."""
 
 # Deviation: the paper corrects the pose with whole scans alone. A vehicle whose speed wanders is
-# then reckoned on for one and a half turns. A third of a turn shows by how much it is off: its
+# then reckoned on for one and a half turns. A part of a turn shows by how much it is off: its
 # beams meet the walls that the last turn met there. The graph does not know of it.
 
 from dataclasses import replace
 
 import numpy as np
 
+from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import compose, compose_jacobians, wrap
 from msss_graphslam.core.graph.graph_construction import consecutive_constraint
 from msss_graphslam.core.graph.keyframes import Node
@@ -17,7 +18,19 @@ from msss_graphslam.core.graph.scan_layout import ReckonedStep, ScanLayout
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.types import Array, Constraint, MapCorrection, Scan
 
-__all__ = ["facing", "previewed"]
+__all__ = ["facing", "lenient", "previewed"]
+
+PAIRED = 0.5
+"""A part is matched by a smaller share of paired points than a scan, times this.
+
+At both its ends points have no partners, and a false match moves the pose alone, until the turn is
+whole. What little a match with few pairs says is in its covariance.
+"""
+
+
+def lenient(config: Matching) -> Matching:
+    """Return how parts are matched, ``config`` being how whole scans are."""
+    return replace(config, overlap=PAIRED * config.overlap)
 
 
 def previewed(

@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
+from msss_graphslam.core.compounding import wrap_angle
 from msss_graphslam.core.echoes.beam_segmentation import BeamSegmenter, reject_ghosts
 from msss_graphslam.core.scans.history import DeadReckoningHistory, Turn, TurnDetector
 from msss_graphslam.core.scans.scan_generation import generate_scan
 from msss_graphslam.core.types import Beam, Odometry, Reading, Scan, Stage
 
-__all__ = ["BLOCK", "PART", "ScanGenerator"]
+__all__ = ["BLOCK", "EARLY_PARTS", "PART", "TELLING", "ScanGenerator", "around"]
 
 BLOCK = 32
 """So many beams are segmented at once, which takes half the time of one by one."""
@@ -24,6 +25,19 @@ PART = 2.0 * np.pi / 3.0
 
 A scan tells of its middle. With a part after a third of a turn, each of the two is at most 5/6 of
 a turn old when the other comes; without it, a scan is 3/2 of a turn old when the next comes.
+"""
+
+EARLY_PARTS = (*(PART * np.arange(1, 9) / 8.0).tolist(), 2.0 * PART)
+"""The same [rad] for the first turn that has another before it: nothing has shown the speed yet.
+
+The pose is off by a whole turn's way at the assumed speed. The first wall that the head meets
+again, some 15 deg on, shows that part of it which is across the wall.
+"""
+
+TELLING = 21
+"""With fewer points a part shows nothing, as in the hull's shadow: another comes after two thirds.
+
+Three lines of seven points are the least that say how a vehicle is displaced.
 """
 
 
@@ -56,7 +70,9 @@ class ScanGenerator:
         self._unread: list[tuple[Beam, _Heard]] = []
         self._waiting: list[Turn[Reading]] = []
         self._part: Turn[_Heard] | None = None
-        self._was_cut = False
+        self._parts_cut = self._turns_in_a_row = 0
+        self._is_told = False
+        self._before: list[Reading] = []
         self._history = DeadReckoningHistory()
 
     @property
@@ -75,11 +91,12 @@ class ScanGenerator:
         turn = self._turns.add(heard)
         if turn is not None:
             self._waiting.append(self._read(turn))
-            self._part, self._was_cut = None, False
+            self._before = self._waiting[-1].readings
+            self._part, self._parts_cut, self._is_told = None, 0, False
+            self._turns_in_a_row = self._turns_in_a_row + 1 if turn.usable else 0
         elif len(self._unread) == BLOCK:
             self._segment()
-        if not self._was_cut and self._turns.swept >= PART:
-            self._part, self._was_cut = self._turns.so_far(), True
+        self._cut_part()
         return self._covered()
 
     def add_odometry(self, odometry: Odometry) -> list[Scan]:
@@ -88,15 +105,24 @@ class ScanGenerator:
         return self._covered()
 
     def part(self) -> Scan | None:
-        """Return the first third of the turn in progress, once, when the odometry covers it.
+        """Return the newest part of the turn in progress, once, when the odometry covers it.
 
-        Its beams come again in the scan of the whole turn.
+        It begins with the turn. Its beams come again in later parts and in the whole turn's scan.
         """
         part = self._part
         if part is None or self._waiting or not self._history.covers(part.end_ns):
             return None
         self._part = None
-        return self._laid_out(self._read(part))
+        if self._is_told and not self._is_early:
+            return None
+        turn = self._read(part)
+        with self._stage("scan_generation"):
+            heard = around(turn.readings, self._before)
+            heard = reject_ghosts(heard, self._configuration.segmentation)
+            turn.readings = heard[: len(turn.readings)]
+            scan = generate_scan(turn, self._history, self._configuration.sonar)
+        self._is_told |= len(scan.points) >= TELLING
+        return scan
 
     def finish(self) -> list[Scan]:
         """Return what is left at the end, also of a turn that the odometry does not cover."""
@@ -108,6 +134,18 @@ class ScanGenerator:
         if self._history.latest is None:
             return []
         return [self._generate(turn) for turn in waiting]
+
+    @property
+    def _is_early(self) -> bool:
+        """Whether nothing has shown the vehicle's speed yet."""
+        return self._turns_in_a_row == 1
+
+    def _cut_part(self) -> None:
+        """Note what has been heard of the turn in progress, if a part of it is due."""
+        due = EARLY_PARTS if self._is_early else (PART, 2.0 * PART)
+        while self._parts_cut < len(due) and self._turns.swept >= due[self._parts_cut]:
+            self._part = self._turns.so_far()
+            self._parts_cut += 1
 
     def _segment(self) -> None:
         """Read the beams that wait for it, and let go of them."""
@@ -138,3 +176,17 @@ class ScanGenerator:
             if turn.usable:
                 turn.readings = reject_ghosts(turn.readings, self._configuration.segmentation)
             return generate_scan(turn, self._history, self._configuration.sonar)  # line 8
+
+
+def around(part: list[Reading], before: list[Reading]) -> list[Reading]:
+    """Return a part's readings and behind them those of the turn before where it has not looked.
+
+    What a ghost is of, the head may have seen elsewhere in the turn.
+    """
+    if not before or not part:
+        return part
+    # A sector's sweep begins where the one before it has ended.
+    returns = abs(wrap_angle(before[-1].bearing - part[0].bearing))
+    again = abs(wrap_angle(before[0].bearing - part[0].bearing))
+    rest = before if again <= returns else before[::-1]
+    return [*part, *rest[len(part) :]]
