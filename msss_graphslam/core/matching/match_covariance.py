@@ -46,22 +46,21 @@ class MatchedPairs:
     prior: Array
 
 
-def match_covariance(forward: MatchedPairs, backward: MatchedPairs, turned: Array) -> Array:
-    """Return the covariance (3, 3) of the mean of both ways.
+def match_covariance(forward: MatchedPairs, backward: MatchedPairs) -> Array:
+    """Return the covariance (3, 3) of the displacement that serves both ways.
 
-    ``turned`` (3, 3) derives the pose by the one that ``backward`` has found, its inverse. Both
-    ways have the same noise, each scan being the points once: together they say what one says.
+    Both ways have the same noise, each scan being the points once: together they say what one
+    says.
     """
-    back = np.asarray(np.linalg.inv(turned))
     there, here = _summed(forward), _summed(backward)
-    found = 0.5 * (there.found + back.T @ here.found @ back)
-    pretended = 0.5 * (there.pretended + back.T @ here.pretended @ back)
+    found = 0.5 * (there.found + here.found)
+    pretended = 0.5 * (there.pretended + here.pretended)
     count = 0.5 * (len(forward.residuals) + len(backward.residuals))
     structure = _structure(found, pretended, count)
     variance = 0.5 * (there.variance + here.variance)
     noise = np.linalg.inv(structure / variance + np.eye(3) / WIDEST)
     # The scan that moves the one way is the lines of the other.
-    drag = 0.5 * (there.drag + turned @ np.roll(here.drag, 3, axis=1))
+    drag = 0.5 * (there.drag + here.drag[:, [3, 4, 5, 0, 1, 2]])
     return np.asarray(0.5 * (noise + noise.T) + drag @ drag.T)
 
 

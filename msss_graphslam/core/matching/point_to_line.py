@@ -12,7 +12,7 @@ A. Censi, An ICP variant using a point-to-line metric, ICRA 2008; robust weights
 import numpy as np
 
 from msss_graphslam.config.groups import Matching
-from msss_graphslam.core.compounding import inverse, inverse_jacobian, wrap
+from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.matching.alignment import Alignment
 from msss_graphslam.core.matching.line_features import LineFeatures
 from msss_graphslam.core.matching.match_covariance import WIDEST, match_covariance
@@ -32,27 +32,19 @@ def match_lines(
 ) -> MatchResult:
     """Align ``current`` with ``reference`` from the displacement ``initial`` (3,).
 
-    Aligns both ways, each scan once being the lines: the two answers must agree, and their mean is
-    the result. A direction in which the scans have no structure keeps ``initial`` and gets a wide
-    covariance. ``initial_covariance`` (3, 3) sets how far off the pairs are looked for. The search
-    begins at ``start`` (3,), where an earlier match of the same scans ended, if there is one.
+    Aligns both ways, each scan once being the lines: the two answers must agree, and the result is
+    where all pairs of both ways fit best. A direction in which the scans have no structure keeps
+    ``initial`` and gets a wide covariance. ``initial_covariance`` (3, 3) sets how far off the
+    pairs are looked for. The search begins at ``start`` (3,), where an earlier match of the same
+    scans ended, if there is one.
     """
     if reference is None or current is None:
         return MatchResult(initial, initial_covariance, "too_few_points")
     start = initial if start is None else start
-    turned = inverse_jacobian(initial)
-    alignment = Alignment(
-        reference,
-        current,
-        np.array([initial, inverse(initial)]),
-        np.array([initial_covariance, turned @ initial_covariance @ turned.T]),
-        config,
-        np.array([start, inverse(start)]),
-    )
-    forward, backward = alignment.poses
-    difference = inverse(backward) - forward
+    alignment = Alignment(reference, current, initial, initial_covariance, config, start)
+    difference = alignment.apart[1] - alignment.apart[0]
     difference[2] = wrap(difference[2])
-    pose = forward + 0.5 * difference
+    pose = alignment.pose
     covariance = _covariance(alignment)
     observed = _observed(difference, covariance, config)
     figures = {
@@ -70,7 +62,7 @@ def _covariance(alignment: Alignment) -> Array:
     pairs = alignment.pairs()
     if pairs is None:
         return WIDEST * np.eye(3)
-    return match_covariance(*pairs, inverse_jacobian(alignment.poses[1]))
+    return match_covariance(*pairs)
 
 
 def _observed(difference: Array, covariance: Array, config: Matching) -> Array:
