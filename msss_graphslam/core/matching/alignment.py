@@ -25,9 +25,6 @@ APART, APART_ANGLE = 0.02, 4e-3
 STEP, STEP_ANGLE = 2e-3, 3e-4
 """An iteration that moves less than this has converged [m], [rad]."""
 
-THINNED = 3
-"""While pairs are looked for widely, one of so many points is asked: it need not be accurate."""
-
 FEWEST = 3
 """Pairs of points and lines that say something of a displacement."""
 
@@ -69,18 +66,17 @@ class Alignment:
             self._align_together(config.pairing_distance, max(left, 1))
         self.pose = np.array(self._poses[0])
         self.scales = np.array(self._scales)
-        self.overlaps = np.array(self._pairs.counts) / np.maximum(self._pairs.points.counts, 1)
+        self.overlaps = np.array(self._pairs.counts) / np.maximum(self._points.counts, 1)
 
     def _align_apart(self, reaches: tuple[float, float], config: Matching) -> int:
         """Align each way for itself; return how many iterations are left."""
         narrow, left = config.pairing_distance, config.iterations
-        few = self._points.thinned(THINNED) if max(reaches) > narrow else self._points
         settled = False
         while left and not settled:
             left -= 1
             wide = max(reaches) > narrow
             gates = max(reaches[0], narrow), max(reaches[1], narrow)
-            equations = self._equations(few if wide else self._points, gates)
+            equations = self._equations(gates)
             steps = tuple(
                 _step(*sums) if count >= FEWEST else (0.0, 0.0, 0.0)
                 for sums, count in zip(equations, self._pairs.counts, strict=True)
@@ -93,17 +89,15 @@ class Alignment:
     def _align_together(self, gate: float, iterations: int) -> None:
         """Align both ways with one displacement."""
         for _ in range(iterations):
-            (first, one), (second, other) = self._equations(self._points, (gate, gate))
+            (first, one), (second, other) = self._equations((gate, gate))
             step = _step(_sum(first, second), [a + b for a, b in zip(one, other, strict=True)])
             self._poses = (_moved(self._poses[0], step),) * 2
             if _within((step,), STEP, STEP_ANGLE):
                 break
 
-    def _equations(
-        self, points: StackedPoints, gates: tuple[float, float]
-    ) -> tuple[Equations, Equations]:
+    def _equations(self, gates: tuple[float, float]) -> tuple[Equations, Equations]:
         """Pair anew and sum up robustly, with the initial guess as a weak prior."""
-        self._pairs = pairs = PairedLines(self._lines, points, self._poses, gates)
+        self._pairs = pairs = PairedLines(self._lines, self._points, self._poses, gates)
         rows, ways = pairs.rows, (slice(0, pairs.middle), slice(pairs.middle, None))
         size = np.abs(rows[3])
         self._scales = [_robust_size(size[way]) for way in ways]

@@ -102,21 +102,6 @@ class StackedPoints:
             counts=counts,
         )
 
-    def thinned(self, step: int) -> "StackedPoints":
-        """Return every ``step``-th point of both scans."""
-        kept = np.r_[: self.second : step, self.second : len(self.places) : step]
-        second = -(-self.second // step)
-        return StackedPoints(
-            places=self.places[kept],
-            normals=self.normals[kept],
-            mean=self.mean[kept],
-            deviator=self.deviator[kept],
-            slips=self.slips,
-            way=self.way[kept],
-            second=second,
-            counts=np.array([second, len(kept) - second]),
-        )
-
     def variances(self, chosen: Numbers, across: Vectors) -> Array:
         """Return the variances (k,) of chosen points along normals, given conjugated."""
         return self.mean[chosen] + np.real(self.deviator[chosen] * across**2)

@@ -35,7 +35,7 @@ class PairedLines:
         poses: tuple[Pose, Pose],
         gates: tuple[float, float],
     ) -> None:
-        self.points, self._lines = points, lines
+        self._points, self._lines = points, lines
         self._turns, shifts = _frames(poses)
         turns = self._turns[points.way]
         seen = turns * points.places + shifts[points.way]
@@ -74,7 +74,7 @@ class PairedLines:
 
     def twin(self) -> Array:
         """Return the first three ``rows`` with the points' own normals instead (3, k)."""
-        own = np.conj(self._turned * self.points.normals[self._paired])
+        own = np.conj(self._turned * self._points.normals[self._paired])
         return self._by_displacement(own) * self._inverse_deviations
 
     def slips(self) -> Array:
@@ -82,7 +82,7 @@ class PairedLines:
 
         Those of the points' scan come first.
         """
-        moved = along(self._across * self._turned, self.points.slips[self._paired])
+        moved = along(self._across * self._turned, self._points.slips[self._paired])
         carried = -along(self._across, self._lines.slips[self._on])
         return np.hstack([moved, carried]) * self._inverse_deviations[:, None]
 
