@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_mission import scans
 
+from msss_graphslam.core.compounding import between_covariance
 from msss_graphslam.core.scans import corrected_keyframes as module
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
 from msss_graphslam.core.scans.corrected_keyframes import CorrectedKeyframes, corrected_keyframes
@@ -86,6 +87,38 @@ def test_so_many_are_laid_out_at_once(
     assert len(found) == len(scans())
     for number, frame in enumerate(found):
         assert_same(frame, number)
+
+
+def spreads(scale: float) -> CorrectedKeyframes:
+    """The same with keyframes known to so many metres and radians."""
+    known = scale**2 * np.tile(np.eye(3), (len(scans()), 1, 1))
+    return CorrectedKeyframes(bare_scans(), poses(), known, closed_form, ERROR)
+
+
+def test_a_scan_between_known_keyframes_states_what_error_they_leave() -> None:
+    """The end of its motion is as uncertain as the one keyframe is in the other's frame."""
+    scan = spreads(0.001)[1].scan
+    first, second = poses()[1:3]
+    left = 1e-6 * np.eye(3)
+    wanted = between_covariance(first, left, second, left)
+    # The way was a little different before it was corrected.
+    np.testing.assert_allclose(np.diag(scan.motion_covariances[-1]), np.diag(wanted), rtol=0.1)
+    loose = spreads(10.0)[1].scan
+    assert np.trace(scan.motion_covariances[-1]) < 0.01 * np.trace(loose.motion_covariances[-1])
+    np.testing.assert_array_equal(scan.points, loose.points)
+
+
+def test_dead_reckoning_may_know_better_than_keyframes() -> None:
+    expected = corrected_scans(scans(), poses(), closed_form, ERROR)[1]
+    found = spreads(10.0)[1].scan
+    np.testing.assert_array_equal(found.motion_covariances, expected.motion_covariances)
+
+
+def test_what_is_not_learned_leaves_dead_reckonings_error() -> None:
+    known = 1e-6 * np.tile(np.eye(3), (len(scans()), 1, 1))
+    plain = CorrectedKeyframes(bare_scans(), poses(), known, closed_form, None)[1].scan
+    expected = corrected_scans(scans(), poses(), closed_form, None)[1]
+    np.testing.assert_array_equal(plain.motion_covariances, expected.motion_covariances)
 
 
 def test_none_at_all() -> None:

@@ -147,7 +147,8 @@ def test_the_scans_may_change_places(seed: int) -> None:
     assert np.hypot(*error[:2]) < 0.003
     assert abs(error[2]) < 0.001
     assert back.refusal == there.refusal
-    assert back.figures["overlap"] == pytest.approx(there.figures["overlap"])
+    # Where a pair is at the edge of what may be one, a millimetre decides.
+    assert back.figures["overlap"] == pytest.approx(there.figures["overlap"], abs=0.01)
 
 
 def test_the_same_scans_give_the_same_bits() -> None:

@@ -8,39 +8,40 @@ import numpy as np
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import wrap_angle
-from msss_graphslam.core.matching.both_ways import (
-    StackedLines,
-    StackedPoints,
-    Vectors,
-    along,
-    vectors,
-)
+from msss_graphslam.core.matching.both_ways import StackedLines, StackedPoints
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.matching.match_covariance import MatchedPairs
+from msss_graphslam.core.matching.match_covariance import LEAST_SCALE, MatchedPairs
+from msss_graphslam.core.matching.paired_lines import SAME_SIDE, PairedLines, Pose
 from msss_graphslam.core.types import Array
 
 __all__ = ["CAUCHY", "SAME_SIDE", "Alignment"]
 
-SAME_SIDE = 0.7
-"""Smallest cosine between the normals of a pair: a wall has two sides and a corner two walls."""
-
 CAUCHY = 2.0
 """Residual, in robust standard deviations, at which a pair's weight is halved."""
 
-STEP, STEP_ANGLE = 5e-4, 1e-4
+APART, APART_ANGLE = 0.02, 4e-3
+"""Each way alone has come near enough for both to go on together [m], [rad]."""
+
+STEP, STEP_ANGLE = 2e-3, 3e-4
 """An iteration that moves less than this has converged [m], [rad]."""
 
 FEWEST = 3
 """Pairs of points and lines that say something of a displacement."""
+
+Equations = tuple[list[list[float]], list[float]]
+"""Normal equations: the matrix (3, 3) and the gradient (3,)."""
 
 
 class Alignment:
     """Point-to-line ICP of two scans, each on the other's lines.
 
     Row 0 of what has two is the way forwards, the ``current`` scan's points on the lines of
-    ``reference``; row 1 the way backwards. Neither way knows of the other: they share the calls.
-    ``poses`` (2, 3) are what they come to, ``overlaps`` and ``scales`` (2,) the share of points
-    with a pair and the robust size of the normalised residuals.
+    ``reference``; row 1 the way backwards. Either finds the displacement of the current scan. At
+    first neither way knows of the other, they only share the calls: ``apart`` (2, 3) is what they
+    come to, and where they disagree the match is a wrong one. From the mean of both they go on
+    together, to the ``pose`` (3,) at which all pairs fit best: the mean weighs both ways alike,
+    however little one of them sees. ``overlaps`` and ``scales`` (2,) are the share of points with
+    a pair and the robust size of the normalised residuals.
     """
 
     def __init__(
@@ -48,97 +49,130 @@ class Alignment:
         reference: LineFeatures,
         current: LineFeatures,
         initial: Array,
-        covariances: Array,
+        covariance: Array,
         config: Matching,
         start: Array,
     ) -> None:
         self._lines = StackedLines.of(reference, current)
         self._points = StackedPoints.of(current, reference)
-        self._initial, self._prior = initial, np.linalg.inv(covariances)
-        self.poses = start.copy()
-        self.overlaps, self.scales = np.zeros(2), np.ones(2)
-        narrow = config.pairing_distance
-        reaches = 3.0 * np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, -1])
-        gates = np.maximum(narrow, reaches)
-        for _ in range(config.iterations):
-            steps = self._iterate(gates)
-            if gates.max() <= narrow and _settled(steps):
+        self._initial, self._prior = initial.tolist(), np.asarray(np.linalg.inv(covariance))
+        self._information = self._prior.tolist()
+        x, y, yaw = start.tolist()
+        self._poses: tuple[Pose, Pose] = ((x, y, yaw), (x, y, yaw))
+        left = self._align_apart(_reaches(initial, covariance), config)
+        self.apart = np.array(self._poses)
+        self._poses = (_middle(*self._poses),) * 2
+        if min(self._pairs.counts) >= FEWEST:
+            self._align_together(config.pairing_distance, max(left, 1))
+        self.pose = np.array(self._poses[0])
+        self.scales = np.array(self._scales)
+        self.overlaps = np.array(self._pairs.counts) / np.maximum(self._points.counts, 1)
+
+    def _align_apart(self, reaches: tuple[float, float], config: Matching) -> int:
+        """Align each way for itself; return how many iterations are left."""
+        narrow, left = config.pairing_distance, config.iterations
+        settled = False
+        while left and not settled:
+            left -= 1
+            wide = max(reaches) > narrow
+            gates = max(reaches[0], narrow), max(reaches[1], narrow)
+            equations = self._equations(gates)
+            steps = tuple(
+                _step(*sums) if count >= FEWEST else (0.0, 0.0, 0.0)
+                for sums, count in zip(equations, self._pairs.counts, strict=True)
+            )
+            self._poses = _moved(self._poses[0], steps[0]), _moved(self._poses[1], steps[1])
+            settled = not wide and _within(steps, APART, APART_ANGLE)
+            reaches = 0.7 * gates[0], 0.7 * gates[1]
+        return left
+
+    def _align_together(self, gate: float, iterations: int) -> None:
+        """Align both ways with one displacement."""
+        for _ in range(iterations):
+            (first, one), (second, other) = self._equations((gate, gate))
+            step = _step(_sum(first, second), [a + b for a, b in zip(one, other, strict=True)])
+            self._poses = (_moved(self._poses[0], step),) * 2
+            if _within((step,), STEP, STEP_ANGLE):
                 break
-            gates = np.maximum(narrow, 0.7 * gates)
 
-    def _iterate(self, gates: Array) -> Array:
-        """Pair anew and step; return the steps (2, 3)."""
-        points, lines = self._points, self._lines
-        turns = np.exp(1j * self.poses[:, 2])[points.way]
-        levers = turns * points.places
-        seen = levers + vectors(self.poses)[points.way]
-        on = lines.nearest(seen, points.second, gates)
-        across = lines.across[on]
-        offsets = across * (seen - lines.centres[on])
-        alike = (across * turns * points.normals).real > SAME_SIDE
-        paired = np.flatnonzero(alike & (np.abs(offsets.imag) < lines.supported[on]))
-        self._paired, self._on = paired, on[paired]
-        across = across[paired]
-        variances = points.variances(paired, across * turns[paired]) + lines.variances[self._on]
-        self._inverse_deviations = 1.0 / np.sqrt(variances)
-        jacobian = _by_pose(across, levers[paired]) * self._inverse_deviations
-        return self._solve(jacobian, offsets.real[paired] * self._inverse_deviations)
+    def _equations(self, gates: tuple[float, float]) -> tuple[Equations, Equations]:
+        """Pair anew and sum up robustly, with the initial guess as a weak prior."""
+        self._pairs = pairs = PairedLines(self._lines, self._points, self._poses, gates)
+        rows, ways = pairs.rows, (slice(0, pairs.middle), slice(pairs.middle, None))
+        size = np.abs(rows[3])
+        self._scales = [_robust_size(size[way]) for way in ways]
+        widths = [CAUCHY * max(scale, LEAST_SCALE) for scale in self._scales]
+        self._weights = 1.0 / (1.0 + (rows[3] / np.repeat(widths, pairs.counts)) ** 2)
+        weighted = rows[:3] * self._weights
+        first, second = (
+            self._with_prior((weighted[:, way] @ rows[:, way].T).tolist(), pose)
+            for way, pose in zip(ways, self._poses, strict=True)
+        )
+        return first, second
 
-    def _solve(self, jacobian: Array, residuals: Array) -> Array:
-        """Take one robust step each way, with the initial guess as a weak prior."""
-        middle = int(np.searchsorted(self._paired, self._points.second))
-        self._ways = slice(0, middle), slice(middle, len(residuals))
-        counts = np.array([middle, len(residuals) - middle])
-        self.overlaps = counts / np.maximum(self._points.counts, 1)
-        size = np.abs(residuals)
-        self._enough = counts >= FEWEST
-        self.scales = np.array([_robust_size(size[way]) for way in self._ways])
-        widths = (CAUCHY * np.maximum(self.scales, 0.1))[self._points.way[self._paired]]
-        weights = 1.0 / (1.0 + (residuals / widths) ** 2)
-        self._last = jacobian, residuals, weights
-        weighted = jacobian * weights
-        error = self.poses - self._initial
-        error[:, 2] = [wrap_angle(angle) for angle in error[:, 2].tolist()]
-        gradient = (self._prior @ error[:, :, None])[:, :, 0]
-        hessian = self._prior.copy()
-        for number, way in enumerate(self._ways):
-            gradient[number] += weighted[:, way] @ residuals[way]
-            hessian[number] += weighted[:, way] @ jacobian[:, way].T
-        steps = -np.linalg.solve(hessian, gradient[:, :, None])[:, :, 0]
-        steps[~self._enough] = 0.0
-        self.poses = self.poses + steps
-        self.poses[:, 2] = [wrap_angle(angle) for angle in self.poses[:, 2].tolist()]
-        return np.asarray(steps)
+    def _with_prior(self, sums: list[list[float]], pose: Pose) -> Equations:
+        """Add the weak prior to the sums (3, 4) of one way at its pose."""
+        x, y, yaw = (now - before for now, before in zip(pose, self._initial, strict=True))
+        yaw = wrap_angle(yaw)
+        gradient = [
+            row[3] + a * x + b * y + c * yaw
+            for row, (a, b, c) in zip(sums, self._information, strict=True)
+        ]
+        return _sum([row[:3] for row in sums], self._information), gradient
 
     def pairs(self) -> tuple[MatchedPairs, MatchedPairs] | None:
         """Return the last step's pairs, None where there were too few either way."""
-        if not self._enough.all():
+        if min(self._pairs.counts) < FEWEST:
             return None
-        jacobian, residuals, weights = self._last
-        points, paired = self._points, self._paired
-        turns = np.exp(1j * self.poses[:, 2])[points.way[paired]]
-        own = np.conj(turns * points.normals[paired])
-        twin = _by_pose(own, turns * points.places[paired])
-        across = self._lines.across[self._on]
-        slips = np.hstack(
-            [
-                along(across * turns, points.slips[paired]),
-                -along(across, self._lines.slips[self._on]),
-            ]
-        )
-        twin, slips = twin * self._inverse_deviations, slips * self._inverse_deviations[:, None]
+        rows, twin, slips = self._pairs.rows, self._pairs.twin(), self._pairs.slips()
+        middle = self._pairs.middle
         forward, backward = (
             MatchedPairs(
-                jacobian[:, way].T, twin[:, way].T, residuals[way], weights[way], slips[way], prior
+                rows[:3, way].T,
+                twin[:, way].T,
+                rows[3, way],
+                self._weights[way],
+                slips[way],
+                self._prior,
             )
-            for way, prior in zip(self._ways, self._prior, strict=True)
+            for way in (slice(0, middle), slice(middle, None))
         )
         return forward, backward
 
 
-def _by_pose(across: Vectors, levers: Vectors) -> Array:
-    """Return the derivatives (3, n) of distances by the pose; ``across`` conjugated normals."""
-    return np.array([across.real, -across.imag, -(across * levers).imag])
+def _reaches(initial: Array, covariance: Array) -> tuple[float, float]:
+    """Return how far off [m] points may be, three standard deviations, forwards and backwards."""
+    x, y, _ = initial.tolist()
+    seen_back = np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
+    both = np.array([covariance[:2, :2], seen_back @ covariance @ seen_back.T])
+    first, second = np.linalg.eigvalsh(both)[:, 1].tolist()
+    return 3.0 * math.sqrt(first), 3.0 * math.sqrt(second)
+
+
+def _step(matrix: list[list[float]], gradient: list[float]) -> Pose:
+    """Return the step that solves normal equations; three numbers are too few for an array."""
+    (a, b, c), (_, d, e), (_, _, f) = matrix
+    u, v, w = gradient
+    e -= b * c / a
+    d -= b * b / a
+    v -= b * u / a
+    yaw = (w - c * u / a - e * v / d) / (f - c * c / a - e * e / d)
+    y = (v - e * yaw) / d
+    return -(u - b * y - c * yaw) / a, -y, -yaw
+
+
+def _sum(first: list[list[float]], second: list[list[float]]) -> list[list[float]]:
+    rows = zip(first, second, strict=True)
+    return [[a + b for a, b in zip(one, other, strict=True)] for one, other in rows]
+
+
+def _moved(pose: Pose, step: Pose) -> Pose:
+    return pose[0] + step[0], pose[1] + step[1], wrap_angle(pose[2] + step[2])
+
+
+def _middle(first: Pose, second: Pose) -> Pose:
+    x, y, yaw = (b - a for a, b in zip(first, second, strict=True))
+    return _moved(first, (0.5 * x, 0.5 * y, 0.5 * wrap_angle(yaw)))
 
 
 def _robust_size(sizes: Array) -> float:
@@ -147,5 +181,5 @@ def _robust_size(sizes: Array) -> float:
     return 1.4826 * float(np.partition(sizes, middle)[middle]) if len(sizes) else 1.0
 
 
-def _settled(steps: Array) -> bool:
-    return all(math.hypot(x, y) < STEP and abs(yaw) < STEP_ANGLE for x, y, yaw in steps.tolist())
+def _within(steps: tuple[Pose, ...], most: float, most_angle: float) -> bool:
+    return all(math.hypot(x, y) < most and abs(yaw) < most_angle for x, y, yaw in steps)

@@ -5,14 +5,13 @@
 Plane vectors are complex numbers x + i y: the real part of conj(a) b is the dot product.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from msss_graphslam.core.matching.line_features import LineFeatures
+from msss_graphslam.core.matching.line_features import LineFeatures, Vectors, vectors
 from msss_graphslam.core.types import Array
 
 if TYPE_CHECKING:
@@ -21,12 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["Numbers", "StackedLines", "StackedPoints", "Vectors", "along", "vectors"]
 
 Numbers = NDArray[np.intp]
-Vectors = NDArray[np.complex128]
-
-
-def vectors(rows: Array) -> Vectors:
-    """Return the first two columns of ``rows`` (n, 2 or more)."""
-    return np.asarray(rows[:, 0] + 1j * rows[:, 1])
 
 
 def along(across: Vectors, moves: Array) -> Array:
@@ -42,7 +35,7 @@ class StackedLines:
     [m] is how far along a line a point may lie, ``second`` where the second scan's begin.
     """
 
-    trees: "Sequence[cKDTree]"
+    trees: "tuple[cKDTree, cKDTree]"
     centres: Vectors
     across: Vectors
     supported: Array
@@ -51,25 +44,23 @@ class StackedLines:
     second: int
 
     @staticmethod
-    def of(*scans: LineFeatures) -> "StackedLines":
+    def of(first: LineFeatures, second: LineFeatures) -> "StackedLines":
         """Put the lines of two scans behind each other."""
+        one, other = first.as_lines, second.as_lines
         return StackedLines(
-            trees=[scan.tree for scan in scans],
-            centres=vectors(_padded([scan.centres for scan in scans])),
-            # A normal of no length is like none other.
-            across=np.conj(
-                vectors(_padded([scan.normals * scan.flat[:, None] for scan in scans]))
-            ),
-            supported=2.0 * _padded([scan.reach for scan in scans]),
-            variances=_padded([scan.variances for scan in scans]),
-            slips=_padded([scan.slips for scan in scans]),
-            second=len(scans[0].points) + 1,
+            trees=(first.tree, second.tree),
+            centres=np.concatenate([one.centres, other.centres]),
+            across=np.concatenate([one.across, other.across]),
+            supported=np.concatenate([one.supported, other.supported]),
+            variances=np.concatenate([one.variances, other.variances]),
+            slips=np.concatenate([one.slips, other.slips]),
+            second=len(one.centres),
         )
 
-    def nearest(self, places: Vectors, second: int, gates: Array) -> Numbers:
+    def nearest(self, places: Vectors, second: int, gates: tuple[float, float]) -> Numbers:
         """Return the numbers of the lines whose points are nearest to places, or of no line.
 
-        The places from ``second`` on belong to the second scan's lines; ``gates`` (2,) [m] are
+        The places from ``second`` on belong to the second scan's lines; ``gates`` [m] are
         how far each may be.
         """
         rows = places.view(np.float64).reshape(-1, 2)
@@ -96,18 +87,16 @@ class StackedPoints:
     counts: Numbers
 
     @staticmethod
-    def of(*scans: LineFeatures) -> "StackedPoints":
+    def of(first: LineFeatures, second: LineFeatures) -> "StackedPoints":
         """Put the points of two scans behind each other."""
-        flat = np.concatenate([scan.flat for scan in scans])
-        covariances = _together(scans, lambda scan: scan.covariances)[flat]
-        xx, yy = covariances[:, 0, 0], covariances[:, 1, 1]
-        counts = np.array([np.count_nonzero(scan.flat) for scan in scans])
+        one, other = first.as_points, second.as_points
+        counts = np.array([len(one.places), len(other.places)])
         return StackedPoints(
-            places=vectors(_together(scans, lambda scan: scan.points)[flat]),
-            normals=vectors(_together(scans, lambda scan: scan.normals)[flat]),
-            mean=0.5 * (xx + yy),
-            deviator=0.5 * (xx - yy) + 1j * covariances[:, 0, 1],
-            slips=_together(scans, lambda scan: scan.slips)[flat],
+            places=np.concatenate([one.places, other.places]),
+            normals=np.concatenate([one.normals, other.normals]),
+            mean=np.concatenate([one.mean, other.mean]),
+            deviator=np.concatenate([one.deviator, other.deviator]),
+            slips=np.concatenate([one.slips, other.slips]),
             way=np.repeat([0, 1], counts),
             second=int(counts[0]),
             counts=counts,
@@ -116,13 +105,3 @@ class StackedPoints:
     def variances(self, chosen: Numbers, across: Vectors) -> Array:
         """Return the variances (k,) of chosen points along normals, given conjugated."""
         return self.mean[chosen] + np.real(self.deviator[chosen] * across**2)
-
-
-def _together(scans: Sequence[LineFeatures], part: Callable[[LineFeatures], Array]) -> Array:
-    return np.concatenate([part(scan) for scan in scans])
-
-
-def _padded(parts: Sequence[Array]) -> Array:
-    """Return one after the other, each with a row of zeros behind it."""
-    rows = [(part, np.zeros((1, *part.shape[1:]))) for part in parts]
-    return np.concatenate([part for row in rows for part in row])

@@ -3,22 +3,62 @@
 """Local lines through a scan's points: what point-to-line matching aligns with."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from msss_graphslam.core.types import Array
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-__all__ = ["LineFeatures", "line_features"]
+__all__ = ["LineFeatures", "Vectors", "line_features", "vectors"]
+
+Vectors = NDArray[np.complex128]
+"""Plane vectors (n,) as x + i y: the real part of conj(a) b is the dot product."""
 
 NEIGHBOURS = 7
 """Points of a local line, itself included: enough to average, few enough to follow a bend."""
 
 FLATNESS = 0.15
 """Largest ratio of a local line's thickness to its length (standard deviations)."""
+
+
+def vectors(rows: Array) -> Vectors:
+    """Return the first two columns of ``rows`` (n, 2 or more)."""
+    return np.asarray(rows[:, 0] + 1j * rows[:, 1])
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """The n lines of a scan, and behind them a place that stands for no line.
+
+    ``across`` (n + 1,) are the conjugated normals, without length where there is no line;
+    ``supported`` (n + 1,) [m] is how far along a line a point may lie.
+    """
+
+    centres: Vectors
+    across: Vectors
+    supported: Array
+    variances: Array
+    slips: Array
+
+
+@dataclass(frozen=True, slots=True)
+class FlatPoints:
+    """The k points of a scan that lie on a line.
+
+    A covariance is ``mean`` [m^2], half its trace, and a ``deviator`` that turns with twice the
+    angle.
+    """
+
+    places: Vectors
+    normals: Vectors
+    mean: Array
+    deviator: Vectors
+    slips: Array
 
 
 @dataclass(frozen=True)
@@ -41,6 +81,31 @@ class LineFeatures:
     flat: np.ndarray
     tree: "cKDTree"
     slips: Array
+
+    @cached_property
+    def as_lines(self) -> Lines:
+        """The lines, for a match."""
+        return Lines(
+            centres=np.append(vectors(self.centres), 0.0),
+            # A normal of no length is like none other.
+            across=np.append(np.where(self.flat, np.conj(vectors(self.normals)), 0.0), 0.0),
+            supported=np.append(2.0 * self.reach, 0.0),
+            variances=np.append(self.variances, 0.0),
+            slips=np.concatenate([self.slips, np.zeros((1, 2, 3))]),
+        )
+
+    @cached_property
+    def as_points(self) -> FlatPoints:
+        """The points that lie on a line, for a match."""
+        covariances = self.covariances[self.flat]
+        xx, yy = covariances[:, 0, 0], covariances[:, 1, 1]
+        return FlatPoints(
+            places=vectors(self.points[self.flat]),
+            normals=vectors(self.normals[self.flat]),
+            mean=0.5 * (xx + yy),
+            deviator=0.5 * (xx - yy) + 1j * covariances[:, 0, 1],
+            slips=self.slips[self.flat],
+        )
 
 
 def line_features(

@@ -50,9 +50,9 @@ class MatchedPairs:
     prior: Array
 
 
-def match_covariance(forward: MatchedPairs, backward: MatchedPairs, turned: Array) -> Array:
-    """Return the covariance (3, 3) of the mean of both ways; see ``match_information``."""
-    return match_information(forward, backward, turned).covariance
+def match_covariance(forward: MatchedPairs, backward: MatchedPairs) -> Array:
+    """Return the covariance (3, 3) of where both ways fit best; see ``match_information``."""
+    return match_information(forward, backward).covariance
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,25 +91,22 @@ class MatchInformation:
         return np.asarray(np.linalg.solve(self.information + self.prior, self.information @ asked))
 
 
-def match_information(
-    forward: MatchedPairs, backward: MatchedPairs, turned: Array
-) -> MatchInformation:
+def match_information(forward: MatchedPairs, backward: MatchedPairs) -> MatchInformation:
     """Return what both ways say together.
 
-    ``turned`` (3, 3) derives the pose by the one that ``backward`` has found, its inverse. Both
-    ways have the same noise, each scan being the points once: together they say what one says.
+    Both ways have the same noise, each scan being the points once: together they say what one
+    says.
     """
-    back = np.asarray(np.linalg.inv(turned))
     there, here = _summed(forward), _summed(backward)
-    found = 0.5 * (there.found + back.T @ here.found @ back)
-    pretended = 0.5 * (there.pretended + back.T @ here.pretended @ back)
+    found = 0.5 * (there.found + here.found)
+    pretended = 0.5 * (there.pretended + here.pretended)
     count = 0.5 * (len(forward.residuals) + len(backward.residuals))
     structure = _structure(found, pretended, count)
     return MatchInformation(
-        hessian=0.5 * (there.hessian + back.T @ here.hessian @ back),
+        hessian=0.5 * (there.hessian + here.hessian),
         information=structure / (0.5 * (there.variance + here.variance)),
         # The scan that moves the one way is the lines of the other.
-        pull=0.5 * (there.pull + back.T @ np.roll(here.pull, 3, axis=1)),
+        pull=0.5 * (there.pull + here.pull[:, [3, 4, 5, 0, 1, 2]]),
         prior=forward.prior,
     )
 

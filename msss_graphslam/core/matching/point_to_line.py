@@ -12,7 +12,7 @@ A. Censi, An ICP variant using a point-to-line metric, ICRA 2008; robust weights
 import numpy as np
 
 from msss_graphslam.config.groups import Matching
-from msss_graphslam.core.compounding import inverse, inverse_jacobian, wrap
+from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.matching.alignment import Alignment
 from msss_graphslam.core.matching.line_features import LineFeatures
 from msss_graphslam.core.matching.match_covariance import WIDEST, match_information
@@ -32,28 +32,20 @@ def match_lines(
 ) -> MatchResult:
     """Align ``current`` with ``reference`` from the displacement ``initial`` (3,).
 
-    Aligns both ways, each scan once being the lines: the two answers must agree, and their mean is
-    the result. A direction in which the scans have no structure keeps ``initial`` and gets a wide
-    covariance. ``initial_covariance`` (3, 3) sets how far off the pairs are looked for. The search
-    begins at ``start`` (3,), where an earlier match of the same scans ended, if there is one.
+    Aligns both ways, each scan once being the lines: the two answers must agree, and the result is
+    where all pairs of both ways fit best. A direction in which the scans have no structure keeps
+    ``initial`` and gets a wide covariance. ``initial_covariance`` (3, 3) sets how far off the
+    pairs are looked for. The search begins at ``start`` (3,), where an earlier match of the same
+    scans ended, if there is one.
     """
     if reference is None or current is None:
         return MatchResult(initial, initial_covariance, "too_few_points")
     start = initial if start is None else start
-    turned = inverse_jacobian(initial)
-    alignment = Alignment(
-        reference,
-        current,
-        np.array([initial, inverse(initial)]),
-        np.array([initial_covariance, turned @ initial_covariance @ turned.T]),
-        config,
-        np.array([start, inverse(start)]),
-    )
-    forward, backward = alignment.poses
-    difference = inverse(backward) - forward
+    alignment = Alignment(reference, current, initial, initial_covariance, config, start)
+    difference = alignment.apart[1] - alignment.apart[0]
     difference[2] = wrap(difference[2])
-    pose = forward + 0.5 * difference
-    freed, covariance = _freed(alignment, initial, pose)
+    pose = alignment.pose
+    freed, covariance = _freed(alignment, initial)
     observed = _observed(difference, covariance, config)
     figures = {
         "overlap": float(alignment.overlaps.min()),
@@ -65,13 +57,13 @@ def match_lines(
     return MatchResult(freed, covariance, _refusal(figures, config), figures)
 
 
-def _freed(alignment: Alignment, initial: Array, pose: Array) -> tuple[Array, Array]:
+def _freed(alignment: Alignment, initial: Array) -> tuple[Array, Array]:
     """Return what the scans say of the pose (3,) beside the first guess, and its covariance."""
     pairs = alignment.pairs()
     if pairs is None:
-        return pose, WIDEST * np.eye(3)
-    said = match_information(*pairs, inverse_jacobian(alignment.poses[1]))
-    shift = pose - initial
+        return alignment.pose, WIDEST * np.eye(3)
+    said = match_information(*pairs)
+    shift = alignment.pose - initial
     shift[2] = wrap(shift[2])
     freed = initial + said.freed(shift)
     freed[2] = wrap(freed[2])

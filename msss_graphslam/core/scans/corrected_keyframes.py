@@ -5,6 +5,7 @@
 from collections.abc import Sequence
 from typing import overload
 
+from msss_graphslam.core.compounding import between_covariance
 from msss_graphslam.core.scans.scan_correction import corrected_scan
 from msss_graphslam.core.scans.trajectory_correction import Solver
 from msss_graphslam.core.types import Array, Keyframe, Scan, TwistError
@@ -55,8 +56,19 @@ class CorrectedKeyframes(Sequence[Keyframe]):
             chosen = self._numbers[place]
             return CorrectedKeyframes(scans, poses, self._covariances, solver, known, chosen)
         number = self._numbers[place]
-        scan = corrected_scan(number, *self._given)
+        scan = corrected_scan(number, scans, poses, solver, known, self._spread(number))
         return Keyframe(scan, poses[number], self._covariances[number])
+
+    def _spread(self, number: int) -> Array | None:
+        """Return how well the displacement of the following keyframe is known (3, 3), if it is.
+
+        At most as badly as if the errors of both keyframes had nothing in common.
+        """
+        _, poses, _, known = self._given
+        if known is None or number + 1 == len(poses):
+            return None
+        both = self._covariances[number], self._covariances[number + 1]
+        return between_covariance(poses[number], both[0], poses[number + 1], both[1])
 
 
 def corrected_keyframes(

@@ -4,9 +4,11 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from msss_graphslam.core.compounding import between
 from msss_graphslam.core.scans.motion_feedback import offset_motion
-from msss_graphslam.core.scans.scan_generation import lay_out
+from msss_graphslam.core.scans.scan_generation import lay_out, motion_derivatives
 from msss_graphslam.core.scans.trajectory_correction import Solver, correct_motion
 from msss_graphslam.core.types import Array, Scan, TwistError
 
@@ -35,11 +37,17 @@ def corrected_scans(
 
 
 def corrected_scan(
-    number: int, scans: Sequence[Scan], poses: Array, solver: Solver, known: TwistError | None
+    number: int,
+    scans: Sequence[Scan],
+    poses: Array,
+    solver: Solver,
+    known: TwistError | None,
+    spread: Array | None = None,
 ) -> Scan:
     """Return one of the scans made anew by the poses (n, 3).
 
-    Its motion's error stays as uncertain as dead reckoning says. The last one, which no keyframe
+    Its motion's error stays as uncertain as dead reckoning says, unless ``spread`` (3, 3) says how
+    well the displacement of the following keyframe is known. The last scan, which no keyframe
     follows, has the twist error taken out that is known by then.
     """
     scan = scans[number]
@@ -47,8 +55,23 @@ def corrected_scan(
         return _with_twist_error(scan, known)
     # What one match has shown of the twist is too sure of itself here: pairs matched again with so
     # small a motion error draw each other along.
+    error = scan.twist_covariance if spread is None else _remaining_error(scan, spread)
     target = between(poses[number], poses[number + 1])
-    return correct_scan(scan, scans[number + 1], target, solver, scan.twist_covariance)[0]
+    return correct_scan(scan, scans[number + 1], target, solver, error)[0]
+
+
+def _remaining_error(scan: Scan, spread: Array) -> Array:
+    """Return the twist error's covariance (3, 3) of a scan that ends as well known as ``spread``.
+
+    Where dead reckoning knows the way better, it is what dead reckoning says.
+    """
+    end = motion_derivatives(scan.motion, scan.beam_times[:-1])[-1]
+    reckoned = end @ scan.twist_covariance @ end.T
+    if np.trace(spread[:2, :2]) >= np.trace(reckoned[:2, :2]):
+        return scan.twist_covariance
+    # A vehicle that spins round once comes back to where it was, whatever its speed.
+    by_end = np.linalg.pinv(end)
+    return np.asarray(by_end @ spread @ by_end.T)
 
 
 def _with_twist_error(scan: Scan, known: TwistError | None) -> Scan:
