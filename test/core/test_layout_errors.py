@@ -60,7 +60,7 @@ def flown(deviation: float, noise: Array) -> Told:
         missed = error - turn[:TURN].mean(axis=0)
         left = turn[TURN : 2 * TURN].mean(axis=0) - feedback.ahead().mean
         told.reference.append(missed**2 / (widened * np.diag(doubt)))
-        told.newest.append(left**2 / np.diag(feedback.after_match()))
+        told.newest.append(left**2 / np.diag(feedback.newest().covariance))
     return told
 
 
@@ -115,3 +115,4 @@ def test_without_a_match_the_newest_turn_is_as_unknown_as_before() -> None:
     feedback.predict(float(TURN), np.diag(ASSUMED**2))
     np.testing.assert_allclose(feedback.after_match(), feedback.beside_match())
     assert (np.diag(feedback.after_match()) >= ASSUMED**2 * 0.999).all()
+    np.testing.assert_array_equal(feedback.newest().covariance, feedback.ahead().covariance)

@@ -135,10 +135,10 @@ def crossing(count: int) -> Array:
     return np.tile(np.eye(2), (count // 2, 1))
 
 
-def covariance(normals: Array, own: Array, residuals: Array) -> Array:
-    """Of a pair without slips, the same both ways."""
+def covariance(normals: Array, own: Array, residuals: Array, guess: float = 1e3) -> Array:
+    """Of a pair without slips, the same both ways; ``guess`` is the first one's deviation."""
     bare = pairs(normals, own, residuals)
-    both = replace(bare, slips=0.0 * bare.slips)
+    both = replace(bare, slips=0.0 * bare.slips, prior=np.eye(3) / guess**2)
     return match_covariance(both, both)
 
 
@@ -172,10 +172,29 @@ def test_the_scatter_of_normals_is_no_structure(scatter: float, structured: bool
     angles = np.where(np.arange(300) % 3 == 0, 0.4, 0.0) if structured else np.zeros(300)
     both = [angles + scatter * rng.normal(size=300) for _ in range(2)]
     first, second = (np.column_stack([np.sin(one), np.cos(one)]) for one in both)
-    found = covariance(first, second, rng.normal(size=300))
+    found = covariance(first, second, rng.normal(size=300), guess=1.0)
     assert (found[0, 0] < 1.0) == structured
     with_guess = np.linalg.inv(np.linalg.inv(found) + np.eye(3))
     assert with_guess[1, 1] < 0.01
+
+
+def across(scatter: float, guess: float) -> float:
+    """The deviation across a bare wall, the way along it being as the guess has it."""
+    rng = np.random.default_rng(4)
+    angles = scatter * rng.normal(size=(2, 300))
+    first, second = np.stack([np.sin(angles), np.cos(angles)], axis=2)
+    found = covariance(first, second, rng.normal(size=300), guess)
+    together = np.linalg.inv(np.linalg.inv(found) + np.eye(3) / guess**2)
+    return float(np.sqrt(together[1, 1]))
+
+
+def test_what_is_open_along_a_wall_makes_its_distance_doubtful() -> None:
+    """By as much as the wall may be tilted, which its noisy normals say."""
+    tilt = 0.1 * np.sqrt(7.0 / 300.0)
+    near, far = across(0.1, 0.1), across(0.1, 20.0)
+    assert near == pytest.approx(np.hypot(1.0 / np.sqrt(300.0), 0.1 * tilt), rel=0.3)
+    assert far == pytest.approx(20.0 * tilt, rel=0.3)
+    assert across(0.0, 20.0) == pytest.approx(across(0.0, 200.0), rel=0.01)
 
 
 def test_no_residual_at_all_is_finite() -> None:

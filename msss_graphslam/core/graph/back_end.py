@@ -189,14 +189,15 @@ def between_factor(
 def _shares(constraints: Sequence[Constraint]) -> list[float]:
     """Return what each constraint counts: matches of one scan have its errors in common.
 
-    Above all that of the motion within it. Together they say of its place what one of them says.
+    Above all that of the motion within it. A match errs by both its scans alike: of the variance
+    of n matches' mean, the newest scan's half stays, and the others' half becomes one n-th.
     """
     matched = [edge.kind is not ConstraintKind.ODOMETRY for edge in constraints]
     often = Counter(
         edge.second for edge, matches in zip(constraints, matched, strict=True) if matches
     )
     return [
-        1.0 / often[edge.second] if matches else 1.0
+        2.0 / (1.0 + often[edge.second]) if matches else 1.0
         for edge, matches in zip(constraints, matched, strict=True)
     ]
 

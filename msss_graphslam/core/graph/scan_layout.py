@@ -59,8 +59,8 @@ class ScanLayout:
 
     def twist_error(self, scan: Scan) -> TwistError:
         """Return the twist error of dead reckoning to be expected in the newest scan."""
-        ahead = self.feedback.ahead()
-        return TwistError(ahead.mean, _known(scan, ahead.covariance))
+        newest = self.feedback.newest()
+        return TwistError(newest.mean, _known(scan, newest.covariance))
 
     def pass_by(self, previous: Scan, scan: Scan) -> None:
         """Let the time pass between the beginnings of two scans."""

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The covariance of a point-to-line match.
 
-Four things keep the inverse Hessian from being it: normals are noisy, and their scatter looks
-like structure along a bare wall; neighbouring residuals have errors in common; the motion within a
-scan is wrong for all its points together, which no number of points averages out; and the first
-guess has a share in the answer, which is no measurement of it.
+Four things keep the inverse Hessian from being it: normals are noisy, which looks like structure
+along a bare wall, and tilts the wall; neighbouring residuals have errors in common; the motion
+within a scan is wrong for all its points together, which no number of points averages out; and the
+first guess has a share in the answer, which is no measurement of it.
 """
 
 # Deviation: not in the paper, whose spIC has the covariance of independent points.
@@ -102,9 +102,13 @@ def match_information(forward: MatchedPairs, backward: MatchedPairs) -> MatchInf
     pretended = 0.5 * (there.pretended + here.pretended)
     count = 0.5 * (len(forward.residuals) + len(backward.residuals))
     structure = _structure(found, pretended, count)
+    variance = 0.5 * (there.variance + here.variance)
+    # Along a bare wall noisy normals take for a distance to it what the guess leaves open.
+    doubtful = np.linalg.inv(structure / variance + forward.prior)
+    variance += NEIGHBOURS * float(np.trace(pretended @ doubtful)) / count
     return MatchInformation(
         hessian=0.5 * (there.hessian + here.hessian),
-        information=structure / (0.5 * (there.variance + here.variance)),
+        information=structure / variance,
         # The scan that moves the one way is the lines of the other.
         pull=0.5 * (there.pull + here.pull[:, [3, 4, 5, 0, 1, 2]]),
         prior=forward.prior,

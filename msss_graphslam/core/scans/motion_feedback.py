@@ -54,6 +54,12 @@ class MotionFeedback:
         """Return the error to be expected in the turn after the one that was predicted."""
         return TwistError(self._kept_ahead() * self.offset, self._grown(self.covariance))
 
+    def newest(self) -> TwistError:
+        """Return the error of the turn after the one that was predicted, by all that is known."""
+        if self._shown is None:
+            return self.ahead()
+        return TwistError(self.ahead().mean, self.after_match())
+
     def beside_match(self) -> Array:
         """Return the covariance (3, 3) of the newest turn's error that a match of it suffers from.
 

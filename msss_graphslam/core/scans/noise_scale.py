@@ -16,7 +16,7 @@ __all__ = ["NoiseScale"]
 BELIEF = 10.0
 """The parameters count as much as so many turns."""
 
-MEMORY = 100.0
+MEMORY = 30.0
 """So many turns count at most: the water changes."""
 
 OUTLIER = 9.0
