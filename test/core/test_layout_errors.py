@@ -116,3 +116,16 @@ def test_without_a_match_the_newest_turn_is_as_unknown_as_before() -> None:
     np.testing.assert_allclose(feedback.after_match(), feedback.beside_match())
     assert (np.diag(feedback.after_match()) >= ASSUMED**2 * 0.999).all()
     np.testing.assert_array_equal(feedback.newest().covariance, feedback.ahead().covariance)
+
+
+def test_a_bias_that_never_changes_is_not_lost_for_that() -> None:
+    """As a gyro's: for all that it changes it could be next to nothing."""
+    feedback, rng = MotionFeedback(Persistence(TIME, ASSUMED**2)), np.random.default_rng(5)
+    bias, squares = np.array([0.03, -0.03, 0.02]), []
+    for _ in range(2000):
+        feedback.predict(float(TURN), np.diag(ASSUMED**2))
+        ahead = feedback.ahead()
+        squares.append((ahead.mean - bias) ** 2 / np.diag(ahead.covariance))
+        doubt = np.diag(np.full(3, NOISE**2)) + 0.25 * feedback.beside_match()
+        feedback.update(bias + NOISE * rng.normal(size=3), doubt)
+    assert np.mean(squares[1000:]) < 1.0

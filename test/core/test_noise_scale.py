@@ -58,8 +58,16 @@ def test_the_slow_part_alone_is_scaled() -> None:
     spread[0, 1] = spread[1, 0] = 1.0
     known = NoiseScale(factors=np.array([3.0, 0.25, 1.0]))
     found = known.applied(spread, np.array([1.0, 5.0, 1.0]))
-    np.testing.assert_allclose(np.diag(found), [6.0, 0.25, 1.0])
+    np.testing.assert_allclose(np.diag(found), [6.0, 0.5, 1.0])
     assert found[0, 1] / np.sqrt(found[0, 0] * found[1, 1]) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("factor", [0.01, 0.25, 1.0, 4.0])
+def test_fewer_changes_are_of_an_error_that_is_smaller_or_lasts_longer(factor: float) -> None:
+    known = NoiseScale(factors=factor * ALL)
+    np.testing.assert_allclose(known.larger / known.longer, factor)
+    assert (known.longer >= 1.0).all()
+    assert (known.longer > 1.0).all() == (factor < 1.0)
 
 
 def test_what_is_excluded_stays_so() -> None:

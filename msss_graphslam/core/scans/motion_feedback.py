@@ -139,7 +139,7 @@ class MotionFeedback:
 
     @property
     def _lasting(self) -> Persistence:
-        return self._persistence.scaled(self._noise.factors)
+        return self._persistence.scaled(self._noise.larger, self._noise.longer)
 
     def _hear_noise(self) -> None:
         """Let the change from the last match to this one tell how large errors are to be expected.
