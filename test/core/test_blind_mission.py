@@ -116,3 +116,15 @@ def test_in_a_corridor_the_way_along_it_is_not_known() -> None:
     assert deviations[-1, 0] > 1.0
     assert deviations[1:, 1].max() < 0.1
     assert (np.abs(found.errors[1:]) < 3.0 * deviations[1:]).all()
+
+
+def test_hardly_a_match_of_bare_walls_tells_the_way_along_them() -> None:
+    """One in a hundred may: each that does ends what the others have left open."""
+    told = []
+    for part in (1.0, -1.05, 1.1, -1.15, 1.2, -1.25):
+        scans, _ = moving_scans(CORRIDOR, 14, twist=part * TWIST, doubt=DOUBT)
+        slam = GraphSlam(Configuration(), ESTIMATORS["full"])
+        matches = [edge for scan in scans for edge in slam.add_scan(scan)]
+        told += [edge.covariance[0, 0] < 9.0 for edge in matches if "overlap" in edge.figures]
+    assert len(told) > 200
+    assert np.mean(told) < 0.02

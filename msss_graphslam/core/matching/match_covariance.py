@@ -25,7 +25,7 @@ WIDEST = 1e4
 LEAST_SCALE = 0.1
 """Residuals smaller than this share of their stated deviations are luck."""
 
-SURE = 2.0
+SURE = 3.0
 """Structure counts where it exceeds that of bare walls by so many standard deviations of it."""
 
 LEAST_LEFT = 0.5
