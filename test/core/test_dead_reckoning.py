@@ -68,6 +68,22 @@ def test_a_dvl_takes_the_place_of_the_assumed_speed() -> None:
     assert not run.refused
 
 
+@pytest.mark.parametrize("lag", [0.0, 0.01, 0.03])
+def test_a_dvl_does_not_disturb_the_heading(lag: float) -> None:
+    """Where the rate pulses five times a second, at the pace of the DVL."""
+    moments = times(0.0, 20.0)
+    rates = np.array([0.5 * (number % 5 in {2, 3}) for number in range(len(moments))])
+    yaws = np.append(0.0, np.cumsum(0.5 * PERIOD * (rates[1:] + rates[:-1])))
+    samples = [imu(*sample) for sample in zip(moments, yaws, rates, strict=True)]
+    dvl = [
+        BodyVelocity(nanoseconds(time + lag), np.array([0.1, 0.0, 0.0]), 1e-4 * np.eye(3))
+        for time in times(0.08, 19.9, 0.2)
+    ]
+    alone, beside = Run().feed(samples), Run().feed([*dvl, *samples])
+    assert beside.last.pose[5] == pytest.approx(alone.last.pose[5], abs=1e-4)
+    assert beside.last.pose[5] == pytest.approx(wrap(yaws[-1]), abs=5e-3)
+
+
 def test_a_silent_dvl_leaves_its_last_word_with_growing_doubt() -> None:
     dvl = [
         BodyVelocity(nanoseconds(time), np.array([0.16, 0.0, 0.0]), 1e-6 * np.eye(3))

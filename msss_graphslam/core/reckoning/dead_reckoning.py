@@ -110,13 +110,13 @@ class DeadReckoning:
             self._inertial_ns = stamp_ns
             self._update_orientation(ekf, measurement)
             return [self._odometry(ekf)]
-        if isinstance(measurement, BodyVelocity):
-            self._measured = True
+        self._measured |= isinstance(measurement, BodyVelocity)
+        if not has_inertial:
+            # While the IMU speaks it alone predicts: it knows how the rates have changed.
             self._predict(ekf, stamp_ns, has_inertial)
+        if isinstance(measurement, BodyVelocity):
             self._updates.velocity(ekf, measurement, self._stamp_ns)
             return []
-        if not has_inertial:
-            self._predict(ekf, stamp_ns, has_inertial)
         if isinstance(measurement, Depth):
             self._updates.depth(ekf, measurement, self._stamp_ns)
             return []
