@@ -22,8 +22,6 @@ KINDS = {
     "newest": "newest keyframe, when it was added",
     "consecutive": "constraint between consecutive scans, when it was made",
     "loop": "loop closure, when it was made",
-    "refined_consecutive": "constraint between consecutive scans, refined",
-    "refined_loop": "loop closure, refined",
     "final": "keyframes at the end",
 }
 STEPS = 40
@@ -79,10 +77,9 @@ def statements(flight: Flight) -> Statements:
         "newest": truth.of_poses(pipeline.newest),
         "final": truth.of_poses(_final(estimate)),
     }
-    for prefix, made in (("", pipeline.tried), ("refined_", estimate.constraints)):
-        for kind in (ConstraintKind.CONSECUTIVE, ConstraintKind.LOOP):
-            accepted = [edge for edge in made if edge.accepted and edge.kind is kind]
-            rows[prefix + kind] = truth.of_constraints(accepted, stamps)
+    for kind in (ConstraintKind.CONSECUTIVE, ConstraintKind.LOOP):
+        accepted = [edge for edge in pipeline.tried if edge.accepted and edge.kind is kind]
+        rows[kind] = truth.of_constraints(accepted, stamps)
     return {kind: _sampled(*found, flight.truth) for kind, found in rows.items()}
 
 

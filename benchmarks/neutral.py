@@ -2,22 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """What stands in for a part of ``full`` that is taken out: the same call, to no effect."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.graph.front_end import FrontEnd
-from msss_graphslam.core.graph.refinement import Refined
 from msss_graphslam.core.matching.match_result import MatchResult
 from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.scans.motion_feedback import MotionFeedback
 from msss_graphslam.core.smoothing.joint_smoothing import Smoothed
-from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan, TwistError
+from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Scan
 
-__all__ = ["NoFeedback", "match_once", "preview", "refine", "smooth", "without_odometry"]
+__all__ = ["NoFeedback", "match_once", "preview", "smooth", "without_odometry"]
 
 _WEAKNESS = 1e6
 _add_scan = FrontEnd.add_scan
@@ -43,21 +41,6 @@ def preview(part: Scan, *others: Any) -> None:
     del part, others
 
 
-def refine(
-    scans: Sequence[Scan],
-    poses: Array,
-    constraints: Sequence[Constraint],
-    known: TwistError | None,
-    matcher: ScanMatcher,
-    config: BackEndConfig,
-    progress: Callable[[float], None],
-) -> Refined:
-    """Return the graph as it is."""
-    del scans, known, matcher, config
-    progress(1.0)
-    return Refined(poses, list(constraints))
-
-
 def smooth(scans: Sequence[Scan], poses: Array, last_twist: Array, *others: Any) -> Smoothed:
     """Return the poses as they are; of their covariances nothing is said."""
     del scans, others
@@ -66,10 +49,7 @@ def smooth(scans: Sequence[Scan], poses: Array, last_twist: Array, *others: Any)
 
 
 def without_odometry(front_end: FrontEnd, scan: Scan) -> list[Constraint]:
-    """Return a new keyframe's constraints; beside a match its odometry counts next to nothing.
-
-    It is not left out, for the refinement may refuse the match and leave the keyframe unattached.
-    """
+    """Return a new keyframe's constraints; beside a match its odometry counts next to nothing."""
     tried = _add_scan(front_end, scan)
     matched = any(edge.accepted and edge.kind is ConstraintKind.CONSECUTIVE for edge in tried)
     return [_weak(edge) if matched else edge for edge in tried]

@@ -39,16 +39,11 @@ class Part:
 
 WHOLE = Part("", "everything")
 
-_NO_SMOOTHING = (f"{_CORE}.logbook.smooth", neutral.smooth)
-_NO_REFINEMENT = (f"{_CORE}.logbook.refine", neutral.refine)
-
 PARTS = (
-    Part("joint smoothing", "the refined graph is the result", replacements=(_NO_SMOOTHING,)),
-    Part("refinement", "joint smoothing of the online graph", replacements=(_NO_REFINEMENT,)),
     Part(
-        "smoothing and refinement",
+        "joint smoothing",
         "the online graph is the result",
-        replacements=(_NO_SMOOTHING, _NO_REFINEMENT),
+        replacements=((f"{_CORE}.logbook.smooth", neutral.smooth),),
     ),
     Part(
         "loop closures",

@@ -13,7 +13,8 @@ import numpy as np
 from benchmarks.tables import Table
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.graph.back_end import BackEnd, between_factor, launch_prior
+from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.factors import between_factor, launch_prior
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind, Estimate
 from msss_graphslam.offline.estimation import Progress
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.core.beam_log import BeamLog
-from msss_graphslam.core.graph.refinement import refine, whole_graph
-from msss_graphslam.core.matching.matchers import ScanMatcher
+from msss_graphslam.core.graph.whole_graph import whole_graph
 from msss_graphslam.core.recipes import Recipe
 from msss_graphslam.core.scans.bare_scans import LaidOut, bare
 from msss_graphslam.core.scans.corrected_keyframes import corrected_keyframes
@@ -67,7 +66,10 @@ class Logbook:
         return corrected_scans(self._keyframes_own(), self.poses, solver, self._learned)
 
     def finish(self, progress: Callable[[float], None] = lambda _: None) -> Estimate:
-        """Refine the graph if the recipe says so, and return everything."""
+        """Smooth the trajectory if the recipe says so, and return everything.
+
+        ``progress`` takes the share of joint smoothing that is done, from 0, before it, to 1.
+        """
         covariances = self._settle(progress)
         solver = self._recipe.solver
         error = self._learned.mean if self._learned else np.zeros(3)
@@ -95,30 +97,18 @@ class Logbook:
         return self.twist_error if self._recipe.goes_beyond else None
 
     def _settle(self, progress: Callable[[float], None]) -> Sequence[Array]:
-        """Refine, and return the covariances (3, 3) of the keyframes."""
-        matcher, config = self._recipe.matcher, self._configuration
-        if not self._recipe.goes_beyond or matcher is None or len(self.poses) < 2:
-            back_end = whole_graph(self.poses, self.constraints, config.back_end)
+        """Smooth, and return the covariances (3, 3) of the keyframes."""
+        if not self._recipe.goes_beyond or len(self.poses) < 2:
+            config = self._configuration.back_end
+            back_end = whole_graph(self.poses, self.constraints, config)
             return [back_end.covariance(number) for number in range(len(self.poses))]
-        with self._stage("refinement"):
-            self._refine(matcher(config.matching), lambda share: progress(0.5 * share))
-            smoothed = self._smooth(lambda share: progress(0.5 + 0.5 * share))
+        with self._stage("joint_smoothing"):
+            progress(0.0)
+            smoothed = self._smooth(progress)
         self.poses = smoothed.poses
         self.twist_error = TwistError(smoothed.twist, smoothed.twist_covariance)
         self._calibration = smoothed.sonar_calibration
         return list(smoothed.covariances)
-
-    def _refine(self, matcher: ScanMatcher, progress: Callable[[float], None]) -> None:
-        refined = refine(
-            self._keyframes_own(),
-            self.poses,
-            self.constraints,
-            self._learned,
-            matcher,
-            self._configuration.back_end,
-            progress,
-        )
-        self.poses, self.constraints = refined.poses, refined.constraints
 
     def _smooth(self, progress: Callable[[float], None]) -> Smoothed:
         config = self._configuration

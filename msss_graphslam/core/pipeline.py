@@ -48,7 +48,7 @@ class Pipeline:
             self._process_in_order(ordered)
 
     def finish(self, progress: Callable[[float], None] = lambda _: None) -> Estimate:
-        """Work off what is still held, refine if the recipe says so, and return everything."""
+        """Work off what is still held, smooth if the recipe says so, and return everything."""
         for ordered in self._sequencer.flush():
             self._process_in_order(ordered)
         self._reckon(self._dead_reckoning.start())

@@ -19,7 +19,7 @@ class Recipe:
     ``matcher`` makes the scan matcher, None leaves dead reckoning alone. ``closes_loops``: Section
     V. ``solver`` of the trajectory correction. ``goes_beyond``: what the paper does not have:
     motion learned from the sonar, odometry kept beside the matches, neighbours found by overlap,
-    the last part turn, refinement of the whole graph, and joint smoothing of all scans.
+    the last part turn, and joint smoothing of all scans.
     """
 
     name: str

@@ -73,7 +73,7 @@ class BackEndNode(SlamNode):
         self._showing.clear(self._mission)
 
     def on_save(self) -> tuple[bool, str]:
-        """Refine a copy of the graph and write all files into the parameter ``output``."""
+        """Smooth a copy of the mission and write all files into the parameter ``output``."""
         take_arrived(self._subscribed)
         self._work_off()
         if not self._settings.output:

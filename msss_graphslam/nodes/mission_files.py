@@ -13,8 +13,8 @@ from msss_graphslam.nodes.tenths import Tenths
 
 __all__ = ["MissionFiles"]
 
-_REFINING = 0.5
-"""Share of the refinement in the whole, as the log tells it."""
+_SMOOTHING = 0.5
+"""Share of joint smoothing in the whole, as the log tells it."""
 
 
 class MissionFiles:
@@ -37,17 +37,17 @@ class MissionFiles:
         self._tell = Tenths(log)
 
     def write(self, mission: Mission, run_so_far: Callable[[], LiveRun]) -> tuple[Estimate, Maps]:
-        """Refine a copy of the graph and write all files; return the estimate and the maps.
+        """Smooth a copy of the mission and write all files; return the estimate and the maps.
 
-        Raises UserError where that cannot be. ``run_so_far`` is asked when the refinement is over.
+        Raises UserError where that cannot be. ``run_so_far`` is asked when it is smoothed.
         """
-        # What writes makes ready while the graph is refined.
+        # What writes makes ready meanwhile.
         with SavingProcess(self._recording, self._complain) as saving:
-            estimate = mission.logbook().finish(self._refined)
+            estimate = mission.logbook().finish(self._smoothed)
             return estimate, saving.save(estimate, run_so_far(), self._output, self._written)
 
-    def _refined(self, share: float) -> None:
-        self._tell(_REFINING * share, "refinement")
+    def _smoothed(self, share: float) -> None:
+        self._tell(_SMOOTHING * share, "joint smoothing")
 
     def _written(self, share: float, what: str) -> None:
-        self._tell(_REFINING + (1.0 - _REFINING) * share, what)
+        self._tell(_SMOOTHING + (1.0 - _SMOOTHING) * share, what)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files of a live run written by a process of their own.
 
-What writes and draws them is loaded there, while the back end refines its graph, so it neither
+What writes and draws them is loaded there, while the back end smooths its scans, so it neither
 takes the node's memory nor its time.
 """
 

@@ -8,7 +8,7 @@ __all__ = ["Tenths"]
 
 
 class Tenths:
-    """Says ``saving 40 %: refinement``, once for each tenth and each thing that is done."""
+    """Says ``saving 40 %: joint smoothing``, once for each tenth and each thing that is done."""
 
     def __init__(self, say: Callable[[str], object]) -> None:
         self._say = say

@@ -24,7 +24,7 @@ __all__ = ["Progress", "estimate"]
 Progress = Callable[[float, str], None]
 """Takes the finished fraction, 0 to 1, and what is being done."""
 
-READING, REFINING = 0.75, 0.2
+READING, SMOOTHING = 0.75, 0.2
 """Shares of a run, as its progress shows them; maps and report are the rest."""
 
 REPORT_EVERY = 500
@@ -51,8 +51,8 @@ def estimate(
     if not beams:
         reasons = ", ".join(f"{reason} {count}" for reason, count in refused.most_common())
         raise UserError(f"{recording.path}: no beam can be used ({reasons}); see `msss inspect`")
-    result = pipeline.finish(partial(_refining, progress))
-    progress(READING + REFINING, "maps")
+    result = pipeline.finish(partial(_smoothing, progress))
+    progress(READING + SMOOTHING, "maps")
     truth = recording.ground_truth(refused)
     example = partial(example_beams, recording, result, configuration)
     return record_of(
@@ -60,9 +60,9 @@ def estimate(
     )
 
 
-def _refining(progress: Progress, share: float) -> None:
+def _smoothing(progress: Progress, share: float) -> None:
     give_back()
-    progress(READING + REFINING * share, "refinement")
+    progress(READING + SMOOTHING * share, "joint smoothing")
 
 
 def _command(recording: Recording, recipe: Recipe, configuration: Configuration) -> str:

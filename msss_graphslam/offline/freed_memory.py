@@ -3,7 +3,7 @@
 """Memory that is free within the process goes back to the system."""
 
 # A day's graph is a million small pieces among others that stay. Without a word, glibc keeps the
-# gaps for pieces as small; the large arrays of the refinement come on top.
+# gaps for pieces as small; the large arrays of joint smoothing come on top.
 
 import ctypes
 

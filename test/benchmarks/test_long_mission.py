@@ -148,7 +148,7 @@ def test_the_whole_names_both_peaks() -> None:
     rows = dict(end_table(columns(300)).rows)
     assert rows["mission [h]"] == "2.0"
     assert rows["peak memory until the last scan [MiB]"] == "200"
-    assert rows["peak memory with them [MiB]"] == "300"
+    assert rows["peak memory with it [MiB]"] == "300"
 
 
 def test_the_picture_is_the_same_every_time(tmp_path: Path) -> None:

@@ -79,23 +79,16 @@ def test_a_shared_front_end_works_once(flight: Flight, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("part", [part.name for part in PARTS])
 def test_every_part_can_be_taken_out(part: str, flight: Flight) -> None:
-    before = (match_rounds.ROUNDS, front_end.MotionFeedback, logbook.smooth, logbook.refine)
+    before = (match_rounds.ROUNDS, front_end.MotionFeedback, logbook.smooth)
     estimate = without(part, flight)
     assert np.isfinite(estimate.trajectory.poses).all()
-    assert before == (
-        match_rounds.ROUNDS,
-        front_end.MotionFeedback,
-        logbook.smooth,
-        logbook.refine,
-    )
+    assert before == (match_rounds.ROUNDS, front_end.MotionFeedback, logbook.smooth)
 
 
 @pytest.mark.parametrize(
     "part",
     [
         "joint smoothing",
-        "refinement",
-        "smoothing and refinement",
         "point-to-line",
         "motion feedback",
         "repeated matching",

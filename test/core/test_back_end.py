@@ -17,6 +17,7 @@ from noisy_graphs import (
 )
 from scipy.optimize import least_squares
 
+from msss_graphslam.config.groups import BackEnd as Config
 from msss_graphslam.core.compounding import between, compose, compose_jacobians, wrap
 from msss_graphslam.core.graph.back_end import BackEnd
 from msss_graphslam.core.types import Array, Constraint
@@ -93,6 +94,18 @@ def test_a_loop_makes_the_last_pose_surer() -> None:
     poses = back_end.poses()
     back_end.update([loop(0, 8, between(poses[0], poses[8]))])
     assert (np.linalg.eigvalsh(back_end.covariance(8)) < before).all()
+
+
+def test_a_loop_that_closes_far_off_is_closed_at_once() -> None:
+    """The robust kernel lets a closure pull harder the nearer the graph has come to it."""
+    vague = np.diag([0.3, 0.3, 0.05]) ** 2
+    chain = [[edge(k, k + 1, np.array([1.0, 0.0, 0.3]), vague)] for k in range(20)]
+    back_end = fed(chain, Config(robust_width=1.0))
+    seen = between(*back_end.poses()[[0, 20]]) + np.array([1.0, -0.5, 0.05])
+    sure = np.diag([0.05, 0.05, 0.01]) ** 2
+    poses = back_end.update([loop(0, 20, seen, sure)])
+    np.testing.assert_allclose(between(*poses[[0, 20]]), seen, atol=0.02)
+    assert_same_poses(back_end.update([]), poses, 0.005)
 
 
 def test_without_keyframes_there_are_no_poses() -> None:

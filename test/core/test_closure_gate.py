@@ -108,13 +108,27 @@ def test_a_keyframe_that_was_dropped_leaves_nothing_behind() -> None:
     assert judged[0] == judged[1]
 
 
-def far_at(share: float, first: int, gate: ClosureGate) -> Constraint:
-    """A closure with the next keyframe, at a share of the bound from the way."""
-    copy = deepcopy(gate)
-    second = len(gate)
-    probe = edge(ConstraintKind.LOOP, first, second, [1.0, 0.0, 0.0])
-    distance = copy.pass_through([*tried_at(second, SPANS), probe])[-1].figures["contradiction"]
-    return edge(ConstraintKind.LOOP, first, second, [np.sqrt(share * BOUND / distance), 0.0, 0.0])
+def far_at(share: float, first: int, gate: ClosureGate, bearing: float = 0.0) -> Constraint:
+    """A closure with the next keyframe, at a share of the bound from the way.
+
+    It is off towards ``bearing`` [rad] in the axes that the way begins with.
+    """
+    second, heading = len(gate), gate._chain._poses[first][2]
+    off = np.array([np.cos(bearing - heading), np.sin(bearing - heading), 0.0])
+    probe = edge(ConstraintKind.LOOP, first, second, off)
+    judged = deepcopy(gate).pass_through([*tried_at(second, SPANS), probe])
+    distance = judged[-1].figures["contradiction"]
+    return edge(ConstraintKind.LOOP, first, second, np.sqrt(share * BOUND / distance) * off)
+
+
+@pytest.mark.parametrize(("bearing", "refusal"), [(0.0, CONTRADICTS), (2.0, ""), (np.pi, "")])
+def test_an_excluded_closure_that_is_off_elsewhere_casts_no_doubt(
+    bearing: float, refusal: str
+) -> None:
+    gate = gate_of(COUNT, SPANS)
+    gate.pass_through([*tried_at(COUNT, SPANS), far_at(1.2, 10, gate)])
+    far = far_at(0.9, 11, gate, bearing)
+    assert gate.pass_through([*tried_at(COUNT + 1, SPANS), far])[-1].refusal == refusal
 
 
 @pytest.mark.parametrize(

@@ -133,16 +133,27 @@ def test_the_trajectory_goes_through_the_keyframes() -> None:
     )
 
 
-@pytest.mark.parametrize(("estimator", "refines"), [("full", True), ("chen2015", False)])
-def test_only_full_refines(estimator: str, refines: bool) -> None:
+@pytest.mark.parametrize(("estimator", "smooths"), [("full", True), ("chen2015", False)])
+def test_only_full_smooths(estimator: str, smooths: bool) -> None:
     logbook, reports = filled(estimator, list(scans()[:6])), list[float]()
     before = logbook.poses.copy()
     logbook.finish(reports.append)
-    assert bool(reports) is refines
-    assert bool(np.abs(logbook.poses - before).max() > 1e-6) is refines
+    assert bool(reports) is smooths
+    assert bool(np.abs(logbook.poses - before).max() > 1e-6) is smooths
 
 
-def test_one_scan_is_not_refined() -> None:
+def test_smoothing_leaves_what_it_was_given() -> None:
+    logbook = filled("full", list(scans()[:6]))
+    kept, constraints = logbook.scans.copy(), logbook.constraints.copy()
+    reports: list[float] = []
+    logbook.finish(reports.append)
+    assert all(new is old for new, old in zip(logbook.scans, kept, strict=True))
+    assert all(new is old for new, old in zip(logbook.constraints, constraints, strict=True))
+    assert (reports[0], reports[-1]) == (0.0, 1.0)
+    assert reports == sorted(reports)
+
+
+def test_one_scan_is_not_smoothed() -> None:
     filled("full", list(scans()[:1])).finish(lambda _: pytest.fail("nothing was to be done"))
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which keyframes the newest one is tried to close a loop with."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from made_scans import standing_scan
 from synthetic_scans import basin
 
 from msss_graphslam.config.groups import Association
-from msss_graphslam.core.graph.keyframes import Node, bare_scan, places, put_by
+from msss_graphslam.core.graph.keyframes import Node, bare_scan, newest_place, places, put_by
 from msss_graphslam.core.graph.loop_search import as_in_the_paper, by_overlap, reach
 from msss_graphslam.core.matching.shape_matching import shape_descriptor
 from msss_graphslam.core.types import Array
@@ -19,12 +20,20 @@ SURE = 1e-6 * np.eye(3)
 CONFIG = Association(mahalanobis_threshold=9.0, reach=0.3, most=4)
 
 
-def chain(count: int) -> list[Node]:
-    """Return nodes of one and the same scan, which is as good as without covariance."""
+def chain(count: int, apart: Sequence[int] = ()) -> list[Node]:
+    """Return nodes of one and the same scan, which is as good as without covariance.
+
+    Those ``apart`` are no places.
+    """
     rng = np.random.default_rng(0)
     scan = standing_scan(basin(rng), np.zeros(3), np.zeros(3), 0, rng)
     descriptor = shape_descriptor(scan.points, 0.0)
-    return [Node(scan, None, scan, SURE, descriptor) for _ in range(count)]
+    nodes: list[Node] = []
+    for number in range(count):
+        node = Node(scan, None, scan, SURE, descriptor, number not in apart)
+        node.place_before = newest_place(nodes)
+        nodes.append(node)
+    return nodes
 
 
 def on_a_line(*places: float) -> Array:
@@ -75,13 +84,18 @@ def test_the_preceding_keyframe_is_no_candidate() -> None:
 
 
 def test_keyframes_that_are_no_places_are_passed_over() -> None:
-    nodes, poses = chain(8), on_a_line(0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
-    nodes[0].is_place = nodes[1].is_place = False
-    assert places(nodes) == [2, 3, 4, 5]
+    nodes, poses = chain(8, apart=[0, 1, 3]), on_a_line(0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    assert places(nodes) == [2, 4, 5]
     for search in (by_overlap, as_in_the_paper):
         wide = replace(CONFIG, mahalanobis_threshold=1e12)
         found = [candidate.index for candidate in search(nodes, poses, wide)]
-        assert found == ([2, 4] if search is by_overlap else [2, 3, 4, 5])
+        assert found == ([2, 4] if search is by_overlap else [2, 4, 5])
+
+
+@pytest.mark.parametrize("count", range(5))
+def test_the_newest_two_are_no_places_yet(count: int) -> None:
+    assert places(chain(count)) == list(range(count - 2))
+    assert places(chain(count, apart=range(count))) == []
 
 
 def test_a_shape_that_differs_counts_in_the_paper_alone() -> None:

@@ -169,7 +169,7 @@ def test_every_stage_is_entered() -> None:
         "data_association",
         "trajectory_correction",
         "back_end",
-        "refinement",
+        "joint_smoothing",
     }
 
 

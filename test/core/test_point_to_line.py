@@ -266,10 +266,23 @@ def test_the_overlap_gate_from_both_sides() -> None:
 def test_a_guess_too_far_off_is_noticed() -> None:
     first, second = pair(8)
     certain = np.diag([0.02, 0.02, 0.005]) ** 2
-    initial = DISPLACEMENT + np.array([0.2, 0.0, 0.0])
+    initial = DISPLACEMENT + np.array([0.3, 0.0, 0.0])
     result = match_lines(first, second, initial, certain, CONFIG)
     assert result.refusal == "too_far_from_the_guess"
     assert result.figures["shift"] > CONFIG.shift
+
+
+def test_a_guess_may_be_somewhat_worse_than_it_says() -> None:
+    """By nearly six of its standard deviations, but not by seven."""
+    first, second = pair(8)
+    spread = np.diag([0.1, 0.1, 0.025]) ** 2
+    refusals = [
+        match_lines(
+            first, second, DISPLACEMENT + np.array([off, 0.0, 0.0]), spread, CONFIG
+        ).refusal
+        for off in (0.55, 0.7)
+    ]
+    assert refusals == ["", "too_far_from_the_guess"]
 
 
 def test_an_uncertain_guess_widens_the_search() -> None:

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from msss_graphslam.core.compounding import between, compose, wrap
+from msss_graphslam.core.recipes import ESTIMATORS
 from msss_graphslam.core.scans.trajectory_correction import (
     Solver,
     closed_form,
@@ -131,3 +132,8 @@ def test_motion_of_a_scan_keeps_its_first_pose(solver: Solver) -> None:
     np.testing.assert_array_equal(motion[0], np.zeros(3))
     shift = np.hypot(*(motion - reckoned[:-1])[:, :2].T)
     assert 0.0 < shift[100] < shift[-1] < 0.23
+
+
+def test_the_paper_s_estimators_search_as_the_paper_does() -> None:
+    assert ESTIMATORS["full"].solver is closed_form
+    assert {ESTIMATORS[name].solver for name in ("uspic", "chen2015")} == {nelder_mead}

@@ -31,7 +31,7 @@ def estimate() -> Estimate:
 
 
 def live_run() -> LiveRun:
-    cost = Cost(100.0, 2.0, 50.0, {"refinement": np.array([1.5])})
+    cost = Cost(100.0, 2.0, 50.0, {"joint_smoothing": np.array([1.5])})
     return LiveRun(Configuration(), "full", Counter(beam_late=3), 60, cost)
 
 

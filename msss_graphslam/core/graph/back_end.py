@@ -6,21 +6,24 @@ M. Kaess et al., iSAM2: Incremental smoothing and mapping using the Bayes tree, 
 (the successor of the paper's [13]).
 """
 
-from collections import Counter
 from collections.abc import Sequence
 
 import gtsam
 import numpy as np
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
-from msss_graphslam.core.compounding import compose, planar_rotation
+from msss_graphslam.core.compounding import compose
 from msss_graphslam.core.graph.constraint_defects import defect
+from msss_graphslam.core.graph.factors import between_factor, launch_prior, shares, turned
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["BackEnd", "between_factor", "launch_prior"]
+__all__ = ["BackEnd"]
 
-LAUNCH_VARIANCE = 1e-12
-"""The first pose defines the map; its prior only holds the gauge [m^2, rad^2]."""
+RELINEARISED = 0.01
+"""What moves farther than this [m, rad] is linearised again."""
+
+STEPS = 10
+"""Most steps of Gauss and Newton for an update. All but those in which a loop closes take one."""
 
 READ_ALWAYS, READ_EVERY = 2000, 16
 """With more keyframes than this, reading all takes longer than optimising: not every time."""
@@ -72,12 +75,10 @@ class BackEnd:
         """
         self._validate(constraints)
         for constraint in constraints:
-            self._admit(constraint)
-        try:
-            self._push(self._added, constraints)
-        except RuntimeError:
-            self._rebuild()
-        self._added = len(self._initial)
+            if constraint.second == len(self._initial):
+                self._begin([edge for edge in constraints if edge.second == constraint.second])
+            self.constraints.append(constraint)
+        self._optimise(constraints, [])
         return self._poses_after(constraints)
 
     def exchange(self, out: Sequence[Constraint], back: Sequence[Constraint]) -> Array:
@@ -91,10 +92,7 @@ class BackEnd:
         self.constraints = [c for c, stays in zip(self.constraints, staying, strict=True) if stays]
         self._slots = [slot for slot, stays in zip(self._slots, staying, strict=True) if stays]
         self.constraints += back
-        try:
-            self._push(self._added, back, slots)
-        except RuntimeError:
-            self._rebuild()
+        self._optimise(back, slots, out)
         self._read = self.poses()
         return self._read.copy()
 
@@ -107,10 +105,14 @@ class BackEnd:
                 raise ValueError(f"{constraint.first} -> {constraint.second}: {reason}")
             known += brings_keyframe
 
-    def _admit(self, constraint: Constraint) -> None:
-        if constraint.second == len(self._initial):
-            self.add_keyframe(compose(self._pose(constraint.first), constraint.relative_pose))
-        self.constraints.append(constraint)
+    def _begin(self, edges: Sequence[Constraint]) -> None:
+        """Add the keyframe at which the edges end, where the last that closes no loop has it.
+
+        That is a match, if there is one: it is nearer to the optimum than dead reckoning.
+        """
+        way = [edge for edge in edges if edge.kind is not ConstraintKind.LOOP] or edges[:1]
+        first = self._pose(way[-1].first)
+        self.add_keyframe(compose(first, way[-1].relative_pose))
 
     def _pose(self, node: int) -> Array:
         if node >= self._added:
@@ -143,76 +145,52 @@ class BackEnd:
     def covariance(self, node: int) -> Array:
         """Return the marginal covariance (3, 3) of a pose, in the axes of ``map``."""
         marginal = np.asarray(self._isam.marginalCovariance(node))
-        return _turned(marginal, self._isam.calculateEstimatePose2(node).theta())
+        return turned(marginal, self._isam.calculateEstimatePose2(node).theta())
 
-    def _push(
-        self, first_new: int, constraints: Sequence[Constraint], out: Sequence[int] = ()
+    def _optimise(
+        self, new: Sequence[Constraint], slots: Sequence[int], out: Sequence[Constraint] = ()
     ) -> None:
+        """Take in what is new and out what is in the slots, until their keyframes stay."""
+        touched = sorted({edge.second for edge in [*new, *out]})
+        before = self._poses_of(touched)
+        try:
+            self._push(new, slots)
+        except RuntimeError:
+            self._rebuild()
+        for _ in range(STEPS - 1):
+            poses = self._poses_of(touched)
+            if np.abs(poses - before).max(initial=0.0) < RELINEARISED:
+                break
+            before = poses
+            self._isam.update()
+
+    def _poses_of(self, nodes: Sequence[int]) -> Array:
+        return np.array([self._pose(node) for node in nodes]).reshape(-1, 3)
+
+    def _push(self, constraints: Sequence[Constraint], out: Sequence[int] = ()) -> None:
         graph, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
-        for node in range(first_new, len(self._initial)):
+        for node in range(self._added, len(self._initial)):
             values.insert(node, gtsam.Pose2(*self._initial[node]))
             if node == 0:
                 graph.add(launch_prior(self._initial[0]))
-        shares = _shares(constraints) if self._divides else [1.0] * len(constraints)
-        for constraint, share in zip(constraints, shares, strict=True):
+        weights = shares(constraints) if self._divides else [1.0] * len(constraints)
+        for constraint, share in zip(constraints, weights, strict=True):
             graph.add(between_factor(constraint, self._config, share))
         indices = self._isam.update(graph, values, list(out)).getNewFactorsIndices()
         self._slots += list(indices)[len(indices) - len(constraints) :]
-        self._isam.update()
+        self._added = len(self._initial)
 
     def _rebuild(self) -> None:
-        self._isam = _smoother()
-        self._read = np.empty((0, 3))
-        self._slots = []
-        self._push(0, self.constraints)
-
-
-def launch_prior(pose: Array) -> gtsam.PriorFactorPose2:
-    """Return what holds keyframe 0 at its ``pose`` (3,)."""
-    noise = gtsam.noiseModel.Isotropic.Variance(3, LAUNCH_VARIANCE)
-    return gtsam.PriorFactorPose2(0, gtsam.Pose2(*pose), noise)
-
-
-def between_factor(
-    constraint: Constraint, config: BackEndConfig, share: float = 1.0
-) -> gtsam.BetweenFactorPose2:
-    """Return a constraint as a factor of equation 4; it counts as a ``share`` of itself."""
-    covariance = _turned(constraint.covariance, -float(constraint.relative_pose[2])) / share
-    noise: gtsam.noiseModel.Base = gtsam.noiseModel.Gaussian.Covariance(covariance)
-    if constraint.kind is ConstraintKind.LOOP and config.robust_width > 0.0:
-        kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(config.robust_width)
-        noise = gtsam.noiseModel.Robust.Create(kernel, noise)
-    relative = gtsam.Pose2(*constraint.relative_pose)
-    return gtsam.BetweenFactorPose2(constraint.first, constraint.second, relative, noise)
-
-
-def _shares(constraints: Sequence[Constraint]) -> list[float]:
-    """Return what each constraint counts: matches of one scan have its errors in common.
-
-    Above all that of the motion within it. A match errs by both its scans alike: of the variance
-    of n matches' mean, the newest scan's half stays, and the others' half becomes one n-th.
-    """
-    matched = [edge.kind is not ConstraintKind.ODOMETRY for edge in constraints]
-    often = Counter(
-        edge.second for edge, matches in zip(constraints, matched, strict=True) if matches
-    )
-    return [
-        2.0 / (1.0 + often[edge.second]) if matches else 1.0
-        for edge, matches in zip(constraints, matched, strict=True)
-    ]
+        self._isam, self._added = _smoother(), 0
+        self._slots, self._read = [], np.empty((0, 3))
+        self._push(self.constraints)
 
 
 def _smoother() -> gtsam.ISAM2:
     parameters = gtsam.ISAM2Params()
-    parameters.setRelinearizeThreshold(0.01)
+    parameters.setRelinearizeThreshold(RELINEARISED)
     parameters.relinearizeSkip = 1
     return gtsam.ISAM2(parameters)
-
-
-def _turned(covariance: Array, yaw: float) -> Array:
-    """Return a pose's covariance in axes turned by -yaw; gtsam's are those of the pose itself."""
-    turn = planar_rotation(yaw)
-    return np.asarray(turn @ covariance @ turn.T)
 
 
 def _row(pose: gtsam.Pose2) -> tuple[float, float, float]:

@@ -3,10 +3,11 @@
 """Which closures the way between their keyframes excludes, and the way that goes on with them."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from msss_graphslam.core.compounding import wrap
 from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.graph.known_places import KNOWN_BETTER
 from msss_graphslam.core.graph.layout_slack import LayoutSlack
@@ -22,11 +23,31 @@ STRETCH = 2 * LAG
 """Closures whose keyframes are so near to each other in number are of the same two stretches."""
 
 COMPANY = 0.5
-"""Share of the bound for closures of a stretch of which one was just excluded.
+"""Share of the bound for closures as far off as one of the same stretches that was just excluded.
 
 The error of the way is common to them all, and so is what made them false: where one is beyond
 what a thousandth of the true ones exceed, the others have to be within what one in twenty does.
 """
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """A closure and how far it is ``off`` (3,) the way, in the axes that the way begins with."""
+
+    closure: Constraint
+    off: Array
+
+    def is_of_the_stretches(self, other: "_Judged") -> bool:
+        """Whether both its keyframes lie near those of an earlier one."""
+        one, earlier = self.closure, other.closure
+        return one.second - earlier.second <= STRETCH and abs(one.first - earlier.first) <= STRETCH
+
+    def distance(self, other: "_Judged", slack: Array) -> float:
+        """Return by how much the two are off differently, as a squared Mahalanobis distance."""
+        apart = self.off - other.off
+        apart[2] = wrap(apart[2])
+        spread = self.closure.covariance + other.closure.covariance + slack
+        return float(apart @ np.linalg.solve(spread, apart))
 
 
 class ClosureGate:
@@ -40,7 +61,7 @@ class ClosureGate:
         self._bound = bound
         self._chain = OdometryChain()
         self._slack = self._slack_before = LayoutSlack()
-        self._excluded: list[tuple[int, int]] = []
+        self._excluded: list[_Judged] = []
 
     @property
     def slack(self) -> Array:
@@ -68,7 +89,7 @@ class ClosureGate:
         """Take the newest keyframe back, as if it had not been there; once in a row."""
         self._chain.drop_newest()
         self._slack = self._slack_before
-        self._excluded = [ends for ends in self._excluded if ends[1] < len(self)]
+        self._excluded = [other for other in self._excluded if other.closure.second < len(self)]
 
     def __len__(self) -> int:
         return len(self._chain)
@@ -77,9 +98,10 @@ class ClosureGate:
         off, spread = self._chain.deviation(closure)
         distance = float(off @ np.linalg.solve(spread + self.slack, off))
         figures = {**closure.figures, "contradiction": distance}
-        in_company = self._is_in_company(closure)
+        one = _Judged(closure, self._chain.turned(closure.first, off))
+        in_company = self._is_in_company(one)
         if distance > self._bound:
-            self._exclude(closure)
+            self._exclude(one)
         if distance > self._bound * (COMPANY if in_company else 1.0):
             return replace(closure, refusal=CONTRADICTS, figures=figures)
         if self._is_near_match(closure):
@@ -87,16 +109,17 @@ class ClosureGate:
             self._chain.take_in(closure, share)
         return replace(closure, figures=figures)
 
-    def _is_in_company(self, closure: Constraint) -> bool:
-        """Whether a closure of the same stretches was excluded not long ago."""
+    def _is_in_company(self, one: _Judged) -> bool:
+        """Whether one of the same stretches that is off by the same was excluded not long ago."""
         return any(
-            closure.second - second <= STRETCH and abs(closure.first - first) <= STRETCH
-            for first, second in self._excluded
+            one.is_of_the_stretches(other) and one.distance(other, self.slack) < self._bound
+            for other in self._excluded
         )
 
-    def _exclude(self, closure: Constraint) -> None:
-        recent = [ends for ends in self._excluded if closure.second - ends[1] <= STRETCH]
-        self._excluded = [*recent, (closure.first, closure.second)]
+    def _exclude(self, one: _Judged) -> None:
+        newest = one.closure.second
+        recent = [other for other in self._excluded if newest - other.closure.second <= STRETCH]
+        self._excluded = [*recent, one]
 
     def _is_near_match(self, edge: Constraint) -> bool:
         return _is_match(edge) and self._is_usable(edge) and self._chain.reaches(edge)

@@ -14,7 +14,7 @@ from msss_graphslam.core.graph.graph_construction import (
     loop_constraints,
     odometry_constraint,
 )
-from msss_graphslam.core.graph.keyframes import Node, bare_scan, places, put_by
+from msss_graphslam.core.graph.keyframes import Node, bare_scan, newest_place, places, put_by
 from msss_graphslam.core.graph.known_places import is_known, located_alone
 from msss_graphslam.core.graph.loop_search import as_in_the_paper, by_overlap, reach
 from msss_graphslam.core.graph.match_rounds import match_in_rounds
@@ -154,6 +154,7 @@ class FrontEnd:
         if len(self.nodes) > 1:
             put_by(self.nodes[-2])
         node = self.layout.node(scan, covariance)
+        node.place_before = newest_place(self.nodes)
         if self._compares_shapes:
             node.descriptor = shape_descriptor(node.scan.points, float(pose[2]))
         self.nodes.append(node)

@@ -17,7 +17,7 @@ from msss_graphslam.core.matching.matchers import ScanMatcher
 from msss_graphslam.core.matching.wide_search import match_widely
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["consecutive_constraint", "loop_constraints", "matched", "odometry_constraint"]
+__all__ = ["consecutive_constraint", "loop_constraints", "odometry_constraint"]
 
 
 def odometry_constraint(
@@ -44,7 +44,7 @@ def consecutive_constraint(
     reference, current = nodes[last - 1].prepared, nodes[last].prepared
     result = matcher.match(reference, current, initial, initial_covariance, start)
     guess = Constraint(ConstraintKind.CONSECUTIVE, last - 1, last, initial, initial_covariance)
-    return matched(guess, result)
+    return _matched(guess, result)
 
 
 def loop_constraints(
@@ -84,12 +84,12 @@ def loop_constraints(
         )
         if candidate.accepted:
             result = match(node.prepared, nodes[current].prepared, initial, covariance)
-            guess = matched(guess, result)
+            guess = _matched(guess, result)
         constraints.append(guess)
     return constraints
 
 
-def matched(constraint: Constraint, result: MatchResult) -> Constraint:
+def _matched(constraint: Constraint, result: MatchResult) -> Constraint:
     """Return the constraint with what a match says of it, refused if no graph could take it."""
     found = replace(
         constraint,

@@ -11,18 +11,19 @@ import numpy as np
 from msss_graphslam.core.scans.scan_generation import reckoned_scan
 from msss_graphslam.core.types import Array, Scan
 
-__all__ = ["Node", "bare_scan", "places", "put_by"]
+__all__ = ["Node", "bare_scan", "newest_place", "places", "put_by"]
 
 
-@dataclass
+@dataclass(slots=True)
 class Node:
     """A keyframe.
 
     ``scan`` in its present layout and ``prepared`` for the matcher, ``first_scan`` as dead
     reckoning laid it out, its ``descriptor``, and ``covariance`` (3, 3) of its pose when it was
     added, which later poses only make smaller. ``is_place``: whether later scans are matched with
-    it, as they are not where nothing was seen. Of the scans only stamp and odometry are left when
-    two others have followed.
+    it, as they are not where nothing was seen; ``place_before`` is the number of the newest place
+    before it, -1 if there is none. Of the scans only stamp and odometry are left when two others
+    have followed.
     """
 
     scan: Scan
@@ -31,14 +32,27 @@ class Node:
     covariance: Array
     descriptor: Array = field(default_factory=lambda: np.empty((0, 0)))
     is_place: bool = True
+    place_before: int = -1
+
+
+def newest_place(nodes: Sequence[Node]) -> int:
+    """Return the number of the newest node that is a place, -1 if none is."""
+    if not nodes or nodes[-1].is_place:
+        return len(nodes) - 1
+    return nodes[-1].place_before
 
 
 def places(nodes: Sequence[Node]) -> list[int]:
     """Return the numbers of the nodes that later scans are matched with, oldest first.
 
-    The newest two are none yet.
+    The newest two are none yet. Goes from place to place: of a day's keyframes few are.
     """
-    return [number for number, node in enumerate(nodes[:-2]) if node.is_place]
+    numbers: list[int] = []
+    number = newest_place(nodes[:-2])
+    while number >= 0:
+        numbers.append(number)
+        number = nodes[number].place_before
+    return numbers[::-1]
 
 
 def put_by(node: Node) -> None:

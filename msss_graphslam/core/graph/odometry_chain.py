@@ -117,6 +117,10 @@ class OdometryChain:
         off[2] = wrap(off[2])
         return off, known[1] + edge.covariance
 
+    def turned(self, first: int, off: Array) -> Array:
+        """Return what is told (3,) in the axes of a keyframe in those of the chain."""
+        return np.asarray(planar_rotation(float(self._poses[first][2])) @ off)
+
     @property
     def _newest(self) -> int:
         return len(self._window.poses) - 1

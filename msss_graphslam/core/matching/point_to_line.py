@@ -21,6 +21,10 @@ from msss_graphslam.core.types import Array
 
 __all__ = ["match_lines"]
 
+DOUBT = 2.0
+"""A guess's variances may be so many times what it says: a vehicle that turns into a current
+changes its speed in steps, and a match refused for it leaves the pose to dead reckoning."""
+
 
 def match_lines(
     reference: LineFeatures | None,
@@ -52,7 +56,7 @@ def match_lines(
         "residual": float(alignment.scales.max()),
         "disagreement_m": float(np.hypot(*observed[:2])),
         "disagreement_rad": float(abs(observed[2])),
-        "shift": _shift(initial, pose, initial_covariance),
+        "shift": _shift(initial, pose, DOUBT * initial_covariance),
     }
     return MatchResult(freed, covariance, _refusal(figures, config), figures)
 

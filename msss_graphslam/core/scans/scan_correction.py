@@ -53,8 +53,6 @@ def corrected_scan(
     scan = scans[number]
     if number == len(scans) - 1:
         return _with_twist_error(scan, known)
-    # What one match has shown of the twist is too sure of itself here: pairs matched again with so
-    # small a motion error draw each other along.
     error = scan.twist_covariance if spread is None else _remaining_error(scan, spread)
     target = between(poses[number], poses[number + 1])
     return correct_scan(scan, scans[number + 1], target, solver, error)[0]

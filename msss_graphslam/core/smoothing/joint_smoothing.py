@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from msss_graphslam.core.compounding import compose
-from msss_graphslam.core.graph.back_end import LAUNCH_VARIANCE
+from msss_graphslam.core.graph.factors import LAUNCH_VARIANCE
 from msss_graphslam.core.scans.motion_feedback import offset_motion
 from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.scans.scan_generation import reckoned_motion
