@@ -11,13 +11,15 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 import rclpy
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 
 __all__ = [
@@ -176,6 +178,64 @@ def live(of: Domain, *arguments: object) -> NodeProcess:
     return NodeProcess([sys.executable, "-m", "msss_graphslam", "live", *map(str, arguments)], of)
 
 
+def _in_the_spinning_thread(method: Callable[..., Any]) -> Any:
+    def order(node: "SpunNode", *arguments: Any, **options: Any) -> Any:
+        return node.do(partial(method, node, *arguments, **options))
+
+    return order
+
+
+class SpunNode(Node):
+    """A node spun in a thread of its own, in which all that it has is made and taken away.
+
+    rclpy is not made for entities that come and go in one thread while another waits on them.
+    """
+
+    create_client = _in_the_spinning_thread(Node.create_client)
+    create_publisher = _in_the_spinning_thread(Node.create_publisher)
+    create_service = _in_the_spinning_thread(Node.create_service)
+    create_subscription = _in_the_spinning_thread(Node.create_subscription)
+    create_timer = _in_the_spinning_thread(Node.create_timer)
+    destroy_client = _in_the_spinning_thread(Node.destroy_client)
+
+    _spinner: Executor | None = None
+    _thread: threading.Thread | None = None
+
+    def spin(self, executor: Executor) -> None:
+        """Start to spin."""
+        self._spinner = executor
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop to spin."""
+        assert self._thread is not None
+        self._stop.set()
+        self._thread.join()
+
+    def do(self, make: Callable[[], Any]) -> Any:
+        """Return what this makes in the thread that spins, before and after that in this one."""
+        spins = self._thread is not None and self._thread.is_alive()
+        if self._spinner is None or not spins or threading.current_thread() is self._thread:
+            return make()
+        made: Future[Any] = Future()
+        self._spinner.create_task(_fulfil, made, make)
+        return made.result(LIMIT)
+
+    def _spin(self) -> None:
+        assert self._spinner is not None
+        while not self._stop.is_set():
+            self._spinner.spin_once(timeout_sec=0.05)
+
+
+def _fulfil(made: Future[Any], make: Callable[[], Any]) -> None:
+    try:
+        made.set_result(make())
+    except Exception as error:
+        made.set_exception(error)
+
+
 class TestNode:
     """A node in the test's own process, spun in a thread, in a domain."""
 
@@ -185,14 +245,12 @@ class TestNode:
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=of.number)
-        self.node = Node(name, namespace=namespace, context=self.context)
+        self.node = SpunNode(name, namespace=namespace, context=self.context)
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._spin, daemon=True)
 
     def __enter__(self) -> Self:
-        self._thread.start()
+        self.node.spin(self.executor)
         return self
 
     def __exit__(
@@ -201,8 +259,7 @@ class TestNode:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._stop.set()
-        self._thread.join()
+        self.node.stop()
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
@@ -211,16 +268,12 @@ class TestNode:
         """Return the answer of a service."""
         client = self.node.create_client(kind, service)
         try:
-            assert client.wait_for_service(limit), f"no service {service}"
+            wait_until(client.service_is_ready, f"service {service}", limit)
             future = client.call_async(kind.Request(**fields))
             wait_until(future.done, f"an answer of {service}", limit)
             return future.result()
         finally:
             self.node.destroy_client(client)
-
-    def _spin(self) -> None:
-        while not self._stop.is_set():
-            self.executor.spin_once(timeout_sec=0.05)
 
 
 def as_yaml(value: Any) -> str:
