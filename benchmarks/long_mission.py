@@ -50,10 +50,11 @@ from the truth, anchored at the start; online is what a subscriber got at the ti
 Where a place holds many keyframes already and the scan is found there again, it is known
 (`core/graph/known_places.py`): the scan is located by the keyframes there, and no later scan is
 matched with it. So a scan is compared with a bounded number of others and tied to at most
-`association.most` of them, the smoother works on a part of the graph that does not grow, and the
-front end keeps no points of it. What still grows: the time that the smoother takes to look through
-all its keyframes in every update, and the memory of what was measured and published, of poses and
-of edges. Scans as the trajectory lays them out in the end are made when they are asked for.
+`association.most` of them, and the front end keeps no points of it. Twelve scans later it leaves
+the smoother (`core/graph/released.py`) and stays where it stood to one of the keyframes it was
+located by; joint smoothing in the end takes in all of them again. What still grows is the memory of
+what was measured and published, of poses and of edges, and the time to go through them. Scans as the
+trajectory lays them out in the end are made when they are asked for.
 
 ## The whole
 

@@ -19,6 +19,7 @@ __all__ = [
     "between_jacobians",
     "carried_over",
     "compose",
+    "compose_covariance",
     "compose_jacobians",
     "inverse",
     "inverse_jacobian",
@@ -118,6 +119,14 @@ def between_jacobians(first: Array, second: Array) -> tuple[Array, Array]:
     return by_inverse @ inverse_jacobian(first), by_second
 
 
+def compose_covariance(
+    first: Array, first_covariance: Array, second: Array, second_covariance: Array
+) -> Array:
+    """Return the covariance (..., 3, 3) of compose(first, second) for independent poses."""
+    by_first, by_second = compose_jacobians(first, second)
+    return _led_through(first_covariance, by_first) + _led_through(second_covariance, by_second)
+
+
 def between_covariance(
     first: Array, first_covariance: Array, second: Array, second_covariance: Array
 ) -> Array:
@@ -126,10 +135,7 @@ def between_covariance(
     Algorithm 4, lines 4 and 10.
     """
     by_first, by_second = between_jacobians(first, second)
-    return np.asarray(
-        by_first @ first_covariance @ np.swapaxes(by_first, -1, -2)
-        + by_second @ second_covariance @ np.swapaxes(by_second, -1, -2)
-    )
+    return _led_through(first_covariance, by_first) + _led_through(second_covariance, by_second)
 
 
 def carried_over(corrected: Array, reckoned: Array) -> Array:
@@ -151,3 +157,7 @@ def transform_points(pose: Array, points: Array) -> Array:
     x = pose[..., 0] + cosine * points[..., 0] - sine * points[..., 1]
     y = pose[..., 1] + sine * points[..., 0] + cosine * points[..., 1]
     return np.stack([x, y], axis=-1)
+
+
+def _led_through(covariance: Array, jacobian: Array) -> Array:
+    return np.asarray(jacobian @ covariance @ np.swapaxes(jacobian, -1, -2))

@@ -6,7 +6,7 @@ import cmath
 
 import numpy as np
 
-from msss_graphslam.core.compounding import between, compose_jacobians, wrap_angle
+from msss_graphslam.core.compounding import between, compose_covariance, wrap_angle
 from msss_graphslam.core.scans.history import DeadReckoningHistory
 from msss_graphslam.core.scans.persistence import Persistence
 from msss_graphslam.core.types import Array, MapCorrection, Odometry
@@ -83,11 +83,9 @@ class OnlinePose:
         motion = between(correction.pose, now)
         twist = self._persistence.mean_over(elapsed, correction.twist_error.covariance)
         drift = _drift_covariance(motion, elapsed, twist)
-        by_first, by_second = compose_jacobians(correction.pose, motion)
-        planar = by_first @ correction.covariance @ by_first.T + by_second @ drift @ by_second.T
         spread[_PLANAR] = 0.0
         spread[:, _PLANAR] = 0.0
-        spread[_BLOCK] = planar
+        spread[_BLOCK] = compose_covariance(correction.pose, correction.covariance, motion, drift)
         return spread
 
     def at(self, odometry: Odometry, stamp_ns: int) -> Array:

@@ -17,7 +17,7 @@ import numpy as np
 from msss_graphslam.core.compounding import (
     carried_over,
     compose,
-    compose_jacobians,
+    compose_covariance,
     inverse,
     wrap,
 )
@@ -116,9 +116,9 @@ def _beam_covariances(keyframes: Sequence[Keyframe]) -> dict[int, Array]:
     covariances: dict[int, Array] = {}
     for keyframe in keyframes:
         scan = keyframe.scan
-        by_frame, by_motion = compose_jacobians(keyframe.pose, scan.motion)
-        spread = by_frame @ keyframe.covariance @ np.swapaxes(by_frame, -1, -2)
-        spread += by_motion @ scan.motion_covariances @ np.swapaxes(by_motion, -1, -2)
+        spread = compose_covariance(
+            keyframe.pose, keyframe.covariance, scan.motion, scan.motion_covariances
+        )
         covariances.update(zip(scan.beam_stamps_ns.tolist(), spread, strict=True))
     return covariances
 

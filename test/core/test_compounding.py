@@ -1,5 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from msss_graphslam.core.compounding import (
     between_covariance,
     carried_over,
     compose,
+    compose_covariance,
     compose_jacobians,
     inverse,
     inverse_jacobian,
@@ -99,15 +102,20 @@ def test_every_function_broadcasts_over_leading_axes() -> None:
         np.testing.assert_array_equal(stacked[1][index], single[1])
 
 
-def test_between_covariance_equals_a_monte_carlo() -> None:
+@pytest.mark.parametrize(
+    ("compounded", "covariance"), [(between, between_covariance), (compose, compose_covariance)]
+)
+def test_a_compounded_covariance_equals_a_monte_carlo(
+    compounded: Callable[..., Array], covariance: Callable[..., Array]
+) -> None:
     rng = np.random.default_rng(1)
     first, second = np.array([1.0, -2.0, 0.7]), np.array([4.0, 3.0, -1.1])
     covariances = [np.diag([0.02, 0.05, 0.01]) ** 2, np.diag([0.04, 0.01, 0.02]) ** 2]
-    samples = between(
-        rng.multivariate_normal(first, covariances[0], 200_000),
-        rng.multivariate_normal(second, covariances[1], 200_000),
+    samples = compounded(
+        rng.multivariate_normal(first, covariances[0], 1_000_000),
+        rng.multivariate_normal(second, covariances[1], 1_000_000),
     )
-    expected = between_covariance(first, covariances[0], second, covariances[1])
+    expected = covariance(first, covariances[0], second, covariances[1])
     np.testing.assert_allclose(np.cov(samples.T), expected, rtol=0.02, atol=1e-5)
 
 

@@ -8,6 +8,7 @@ import pytest
 from msss_graphslam.config.groups import BackEnd as Config
 from msss_graphslam.core.compounding import between, compose
 from msss_graphslam.core.graph.back_end import BackEnd
+from msss_graphslam.core.graph.closure_gate import STRETCH
 from msss_graphslam.core.graph.closure_review import PATIENCE, ClosureReview, Verdict
 from msss_graphslam.core.graph.guarded_back_end import CONTRADICTS, WITHDRAWN, GuardedBackEnd
 from msss_graphslam.core.graph.known_places import KNOWN_BETTER
@@ -240,3 +241,58 @@ def test_a_keyframe_whose_closures_are_withdrawn_hangs_on_its_predecessor(
     assert [edge.refusal for edge in back_end.tried[-2:]] == ["", WITHDRAWN]
     np.testing.assert_allclose(between(poses[19], poses[20]), STEP, atol=1e-6)
     assert np.linalg.eigvalsh(covariance)[0] > 0.0
+
+
+def lap(back_end: GuardedBackEnd, hangers: tuple[int, ...] = ()) -> list[Array]:
+    """Go round once more at known places; return the poses after each scan.
+
+    Each scan hangs on two closures, but some hang on their predecessor.
+    """
+    seen = []
+    for second in range(NODES, 2 * NODES):
+        first = second - NODES
+        tried = [left_out(second), closure(first, second), closure(max(first - 2, 0), second)]
+        seen.append(back_end.take(START, [step(second)] if second in hangers else tried)[0])
+    return seen
+
+
+def test_scans_of_known_places_leave_the_smoother_and_stay_where_they_are() -> None:
+    back_end = fed({})
+    poses = lap(back_end)[-1]
+    inside = {edge.second for edge in back_end._back_end.constraints}
+    assert inside == {*range(1, NODES), *range(2 * NODES - STRETCH, 2 * NODES)}
+    assert all(edge.refusal in {"", KNOWN_BETTER} for edge in back_end.tried)
+    np.testing.assert_allclose(poses[:, :2], truth()[: 2 * NODES, :2], atol=0.02)
+
+
+def test_what_another_scan_hangs_on_stays_in_the_smoother() -> None:
+    back_end = fed({})
+    lap(back_end, hangers=(NODES + 3,))
+    inside = {edge.second for edge in back_end._back_end.constraints}
+    assert {NODES + 2, NODES + 3} <= inside
+    assert not {NODES + 1, NODES + 4} & inside
+
+
+def test_a_closure_of_one_that_has_left_may_be_withdrawn_and_come_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    back_end = fed({})
+    poses = lap(back_end)[-1]
+    verdicts = [Verdict((0, 1), ()), Verdict((), (0, 1))]
+    monkeypatch.setattr(back_end._review, "judge", lambda _: verdicts.pop(0))
+    for second, refusal in ((2 * NODES, WITHDRAWN), (2 * NODES + 1, "")):
+        again, _ = back_end.take(START, [step(second)])
+        assert refusals(back_end)[:2] == [refusal] * 2
+        np.testing.assert_allclose(again[: 2 * NODES], poses, atol=0.01)
+
+
+def test_a_false_closure_to_one_that_has_left_is_withdrawn() -> None:
+    back_end = fed({})
+    lap(back_end)
+    wrong = closure(NODES + 1, 2 * NODES, (1.5, 1.0, 0.0))
+    right = [closure(number, 2 * NODES) for number in range(4)]
+    back_end.take(START, [step(2 * NODES), wrong, *right])
+    for second in range(2 * NODES + 1, 2 * NODES + 1 + PATIENCE):
+        back_end.take(START, [step(second)])
+    assert back_end.withdrawals == 1
+    assert {edge.refusal for edge in back_end.tried if edge.first == wrong.first} >= {WITHDRAWN}

@@ -15,6 +15,7 @@ from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.compounding import compose
 from msss_graphslam.core.graph.constraint_defects import defect
 from msss_graphslam.core.graph.factors import between_factor, launch_prior, shares, turned
+from msss_graphslam.core.graph.released import Released
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
 __all__ = ["BackEnd"]
@@ -35,19 +36,25 @@ READ_AGAIN = 2e-3
 class BackEnd:
     """Keyframes and accepted constraints in, optimised poses and covariances out.
 
-    The constraints are kept in ``constraints``; the smoother is rebuilt from them after a failure.
+    The smoother is rebuilt from its ``constraints`` after a failure.
     """
 
     def __init__(self, config: BackEndConfig, *, divides: bool = False) -> None:
         """Begin empty; ``divides`` the weight of a scan among the matches that end at it."""
         self._config = config
         self._divides = divides
-        self.constraints: list[Constraint] = []
-        self._slots: list[int] = []
+        self._inside: dict[int, Constraint] = {}
+        self._slots: dict[int, int] = {}
+        self._released = Released()
         self._initial: list[Array] = []
         self._read = np.empty((0, 3))
         self._added = 0
         self._isam = _smoother()
+
+    @property
+    def constraints(self) -> list[Constraint]:
+        """The constraints in the smoother, in the order in which they were taken in."""
+        return list(self._inside.values())
 
     def add_keyframe(self, pose: Array) -> int:
         """Add a node with its first estimate (3,); return its number."""
@@ -56,43 +63,46 @@ class BackEnd:
         self._initial.append(np.array(pose, dtype=float))
         return len(self._initial) - 1
 
-    def take(self, pose: Array, tried: Sequence[Constraint]) -> tuple[Array, Array]:
+    def take(
+        self, pose: Array, tried: Sequence[Constraint], released: Sequence[Constraint] = ()
+    ) -> tuple[Array, Array]:
         """Take in a keyframe; return all poses (n, 3) and the newest one's covariance (3, 3).
 
         ``tried`` are the constraints that end at it, of which the accepted ones count; the first
-        keyframe of all has none and is put at its own ``pose`` (3,).
+        keyframe of all has none and is put at its own ``pose`` (3,). For ``released`` see
+        ``update``.
         """
         if not self._initial:
             self.add_keyframe(pose)
-        poses = self.update([entry for entry in tried if entry.accepted])
+        poses = self.update([entry for entry in tried if entry.accepted], released)
         return poses, self.covariance(len(poses) - 1)
 
-    def update(self, constraints: Sequence[Constraint]) -> Array:
+    def update(
+        self, constraints: Sequence[Constraint], released: Sequence[Constraint] = ()
+    ) -> Array:
         """Add accepted constraints and optimise; return all poses (n, 3), equation 4.
 
         A constraint to a new keyframe brings the keyframe's first estimate. Raises ValueError for
-        one that may not enter a graph (see ``defect``); then none of them has.
+        one that may not enter a graph (see ``defect``); then none of them has. ``released`` are
+        all those of a keyframe that is to leave the smoother: it keeps its place by one of them.
         """
         self._validate(constraints)
         for constraint in constraints:
             if constraint.second == len(self._initial):
                 self._begin([edge for edge in constraints if edge.second == constraint.second])
-            self.constraints.append(constraint)
-        self._optimise(constraints, [])
+        if released:
+            self._released.add(released, self._pose)
+        self._optimise(constraints, released)
         return self._poses_after(constraints)
 
     def exchange(self, out: Sequence[Constraint], back: Sequence[Constraint]) -> Array:
         """Take constraints out of the graph and others in; return all poses (n, 3).
 
-        Those that go out are the very objects that were taken in.
+        Those that go out are the very objects that were taken in. Where a keyframe has left the
+        smoother nothing changes for it.
         """
-        going = {id(constraint) for constraint in out}
-        staying = [id(constraint) not in going for constraint in self.constraints]
-        slots = [slot for slot, stays in zip(self._slots, staying, strict=True) if not stays]
-        self.constraints = [c for c, stays in zip(self.constraints, staying, strict=True) if stays]
-        self._slots = [slot for slot, stays in zip(self._slots, staying, strict=True) if stays]
-        self.constraints += back
-        self._optimise(back, slots, out)
+        known = [edge for edge in out if id(edge) in self._slots]
+        self._optimise([edge for edge in back if edge.second not in self._released], known)
         self._read = self.poses()
         return self._read.copy()
 
@@ -117,12 +127,16 @@ class BackEnd:
     def _pose(self, node: int) -> Array:
         if node >= self._added:
             return self._initial[node]
+        if node in self._released:
+            hold = self._released.hold(node)
+            return compose(self._pose(hold.first), hold.relative_pose)
         return np.array(_row(self._isam.calculateEstimatePose2(node)))
 
     def poses(self) -> Array:
         """Return the optimised poses (n, 3) of all keyframes."""
         values = self._isam.calculateEstimate()
-        return np.asarray(gtsam.utilities.extractPose2(values), dtype=float).reshape(-1, 3)
+        inside = np.asarray(gtsam.utilities.extractPose2(values), dtype=float).reshape(-1, 3)
+        return self._released.completed(inside)
 
     def _poses_after(self, constraints: Sequence[Constraint]) -> Array:
         """Return all poses (n, 3) after an update by ``constraints``.
@@ -147,12 +161,15 @@ class BackEnd:
         marginal = np.asarray(self._isam.marginalCovariance(node))
         return turned(marginal, self._isam.calculateEstimatePose2(node).theta())
 
-    def _optimise(
-        self, new: Sequence[Constraint], slots: Sequence[int], out: Sequence[Constraint] = ()
-    ) -> None:
-        """Take in what is new and out what is in the slots, until their keyframes stay."""
-        touched = sorted({edge.second for edge in [*new, *out]})
+    def _optimise(self, new: Sequence[Constraint], out: Sequence[Constraint]) -> None:
+        """Take in what is new and out what goes out, until their keyframes stay."""
+        ends = {edge.second for edge in [*new, *out]}
+        touched = sorted(node for node in ends if node not in self._released)
         before = self._poses_of(touched)
+        slots = [self._slots.pop(id(edge)) for edge in out]
+        for edge in out:
+            del self._inside[id(edge)]
+        self._inside.update((id(edge), edge) for edge in new)
         try:
             self._push(new, slots)
         except RuntimeError:
@@ -170,19 +187,22 @@ class BackEnd:
     def _push(self, constraints: Sequence[Constraint], out: Sequence[int] = ()) -> None:
         graph, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
         for node in range(self._added, len(self._initial)):
-            values.insert(node, gtsam.Pose2(*self._initial[node]))
+            if node not in self._released:
+                values.insert(node, gtsam.Pose2(*self._initial[node]))
             if node == 0:
                 graph.add(launch_prior(self._initial[0]))
         weights = shares(constraints) if self._divides else [1.0] * len(constraints)
         for constraint, share in zip(constraints, weights, strict=True):
-            graph.add(between_factor(constraint, self._config, share))
-        indices = self._isam.update(graph, values, list(out)).getNewFactorsIndices()
-        self._slots += list(indices)[len(indices) - len(constraints) :]
+            edge = self._released.from_inside(constraint)
+            graph.add(between_factor(edge, self._config, share))
+        indices = list(self._isam.update(graph, values, list(out)).getNewFactorsIndices())
+        slots = indices[len(indices) - len(constraints) :]
+        self._slots.update(zip(map(id, constraints), slots, strict=True))
         self._added = len(self._initial)
 
     def _rebuild(self) -> None:
         self._isam, self._added = _smoother(), 0
-        self._slots, self._read = [], np.empty((0, 3))
+        self._slots, self._read = {}, np.empty((0, 3))
         self._push(self.constraints)
 
 

@@ -14,7 +14,7 @@ from msss_graphslam.core.graph.layout_slack import LayoutSlack
 from msss_graphslam.core.graph.odometry_chain import LAG, OdometryChain
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
 
-__all__ = ["CONTRADICTS", "ClosureGate"]
+__all__ = ["CONTRADICTS", "STRETCH", "ClosureGate"]
 
 CONTRADICTS = "contradicts_odometry"
 """Refusal of a closure that the way between its keyframes excludes."""

@@ -8,7 +8,7 @@ from contextlib import nullcontext
 import numpy as np
 
 from msss_graphslam.config.configuration import Configuration
-from msss_graphslam.core.compounding import between, compose, compose_jacobians
+from msss_graphslam.core.compounding import between, compose, compose_covariance
 from msss_graphslam.core.graph.graph_construction import (
     consecutive_constraint,
     loop_constraints,
@@ -142,10 +142,8 @@ class FrontEnd:
         if self._recipe.goes_beyond:
             self.layout.pass_by(previous, scan)
         step = self.layout.step(previous, scan)
-        by_first, by_second = compose_jacobians(self.poses[-1], step.relative_pose)
-        covariance = (
-            by_first @ reference.covariance @ by_first.T
-            + by_second @ step.covariance @ by_second.T
+        covariance = compose_covariance(
+            self.poses[-1], reference.covariance, step.relative_pose, step.covariance
         )
         self._append(scan, compose(self.poses[-1], step.relative_pose), covariance)
         return step

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from msss_graphslam.config.groups import BackEnd as BackEndConfig
 from msss_graphslam.core.graph.back_end import BackEnd
-from msss_graphslam.core.graph.closure_gate import CONTRADICTS, ClosureGate
+from msss_graphslam.core.graph.closure_gate import CONTRADICTS, STRETCH, ClosureGate
 from msss_graphslam.core.graph.closure_review import ClosureReview
 from msss_graphslam.core.graph.known_places import KNOWN_BETTER, hung_again
 from msss_graphslam.core.types import Array, Constraint, ConstraintKind
@@ -33,6 +33,7 @@ class GuardedBackEnd:
         self._gate = ClosureGate(self._bound)
         self._review = ClosureReview(self._bound)
         self._watched: list[int] = []
+        self._begins: list[int] = []
         self.tried: list[Constraint] = []
         self.withdrawals = self.readmissions = 0
 
@@ -51,13 +52,26 @@ class GuardedBackEnd:
             judged = self._gate.pass_through(tried) if tried else []
             if any(edge.refusal == CONTRADICTS for edge in judged):
                 judged = hung_again(judged)
-            poses, covariance = self._back_end.take(pose, judged)
+            released = self._to_be_released()
+            poses, covariance = self._back_end.take(pose, judged, released)
         except Exception:
             self._cut(before)
             raise
         self._cut(len(poses))
         self._note(judged)
         return self._reviewed(poses, covariance)
+
+    def _to_be_released(self) -> list[Constraint]:
+        """Return by what a scan of a known place hangs, once nothing else will hang on it."""
+        number = len(self._begins) - STRETCH
+        if number < 1:
+            return []
+        begin, end = self._begins[number : number + 2]
+        edges = self.tried[begin:end]
+        holds = [edge for edge in edges if edge.accepted]
+        is_leaf = all(edge.first != number for edge in self.tried[end:] if edge.accepted)
+        was_known = any(edge.refusal == KNOWN_BETTER for edge in edges)
+        return holds if holds and was_known and is_leaf else []
 
     def _cut(self, count: int) -> None:
         if len(self._gate) > count:
@@ -70,6 +84,7 @@ class GuardedBackEnd:
             for number, edge in enumerate(judged, len(self.tried))
             if edge.kind is ConstraintKind.LOOP and edge.accepted
         ]
+        self._begins.append(len(self.tried))
         self.tried += judged
         self._watched += closures
         self._review.add([self.tried[number] for number in closures], self._gate.slack)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from msss_graphslam.config.groups import Matching
-from msss_graphslam.core.compounding import compose, compose_jacobians, wrap
+from msss_graphslam.core.compounding import compose, compose_covariance, wrap
 from msss_graphslam.core.graph.graph_construction import consecutive_constraint
 from msss_graphslam.core.graph.keyframes import Node
 from msss_graphslam.core.graph.scan_layout import ReckonedStep, ScanLayout
@@ -55,10 +55,7 @@ def previewed(
         return None
     ahead.learn_twist(previous, part, match)
     relative, spread = _fused(step, ahead.widened(match))
-    by_pose, by_relative = compose_jacobians(pose, relative)
-    current.covariance = (
-        by_pose @ newest.covariance @ by_pose.T + by_relative @ spread @ by_relative.T
-    )
+    current.covariance = compose_covariance(pose, newest.covariance, relative, spread)
     return ahead.correction(current, compose(pose, relative))
 
 
