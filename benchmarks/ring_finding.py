@@ -107,7 +107,9 @@ def _nearest_echoes(beams: Sequence[Beam]) -> Array:
     turn = round(2.0 * np.pi / float(np.median(steps)))
     nearest = np.full(len(beams), np.nan)
     for begin in range(0, len(beams), turn):
-        kept = reject_ghosts(readings[begin : begin + turn], config.segmentation)
+        kept = reject_ghosts(
+            readings[begin : begin + turn], config.segmentation, config.sonar.beam_width
+        )
         ranges = [reading.ranges.min() for reading in kept if reading.ranges.size]
         nearest[begin : begin + turn] = min(ranges, default=np.nan)
     return nearest

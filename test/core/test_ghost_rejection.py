@@ -11,9 +11,16 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from msss_graphslam.config.groups import Segmentation
-from msss_graphslam.core.echoes.ghost_rejection import _connected, _stays, reject_ghosts
+from msss_graphslam.core.echoes.ghost_rejection import _stays, reject_ghosts
+from msss_graphslam.core.echoes.turn_surfaces import (
+    TurnEchoes,
+    _connected,
+    beams_by_chance,
+    surfaces_of,
+)
 
 CONFIG = Segmentation()
+WIDTH = np.radians(3.0)
 BEAMS = 200
 BEARINGS = np.arange(BEAMS) * 2.0 * np.pi / BEAMS
 AHEAD = np.cos(BEARINGS) > np.cos(np.radians(60.0))
@@ -42,7 +49,7 @@ def placed(beams, distance, level):
 
 
 def kept(readings, config=CONFIG):
-    return [reading.ranges.tolist() for reading in reject_ghosts(readings, config)]
+    return [reading.ranges.tolist() for reading in reject_ghosts(readings, config, WIDTH)]
 
 
 def test_a_wall_stays_whole():
@@ -140,13 +147,13 @@ def test_the_ends_of_a_sector_do_not_touch():
 def test_readings_are_not_changed_in_place():
     readings = turn(wall(), placed([120], 4.0, 40.0))
     before = [reading.ranges.copy() for reading in readings]
-    reject_ghosts(readings, CONFIG)
+    reject_ghosts(readings, CONFIG, WIDTH)
     assert all(np.array_equal(a.ranges, b) for a, b in zip(readings, before, strict=True))
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_a_turn_of_hardly_any_beams_is_taken(count):
-    assert len(reject_ghosts(turn(wall())[:count], CONFIG)) == count
+    assert len(reject_ghosts(turn(wall())[:count], CONFIG, WIDTH)) == count
 
 
 def test_a_turn_without_echoes_stays_so():
@@ -171,7 +178,7 @@ def test_where_the_turn_begins_does_not_matter(shift):
 )
 def test_what_is_left_was_there_before(scene, offset):
     readings = [reading_of(offset + 0.03 * beam, sorted(e)) for beam, e in enumerate(scene)]
-    for before, after in zip(readings, reject_ghosts(readings, CONFIG), strict=True):
+    for before, after in zip(readings, reject_ghosts(readings, CONFIG, WIDTH), strict=True):
         assert after.bearing == before.bearing
         assert set(after.ranges.tolist()) <= set(before.ranges.tolist())
         assert after.ranges.size == after.levels.size == after.variances.size
@@ -202,4 +209,72 @@ def test_surfaces_are_judged_as_one_after_another(seed):
         members = surfaces == surface
         seen = len(set(beams[members].tolist())) >= CONFIG.surface_beams
         expected[members] = seen and np.median(deficits[members]) < CONFIG.ghost_contrast
-    np.testing.assert_array_equal(_stays(surfaces, beams, deficits, CONFIG), expected)
+    found = _stays(surfaces, beams, deficits, CONFIG.surface_beams, CONFIG.ghost_contrast)
+    np.testing.assert_array_equal(found, expected)
+
+
+def specks(seed, each, nearest=1.0, farthest=40.0):
+    """Echoes anywhere, ``each`` a beam on the average."""
+    rng = np.random.default_rng(seed)
+    return [
+        [
+            (rng.uniform(nearest, farthest), rng.uniform(30.0, 40.0))
+            for _ in range(rng.poisson(each))
+        ]
+        for _ in range(BEAMS)
+    ]
+
+
+def chance(readings, width=WIDTH):
+    echoes = TurnEchoes.of(readings)
+    return beams_by_chance(echoes, surfaces_of(echoes, CONFIG), CONFIG, width)
+
+
+@pytest.mark.parametrize("each", [2.0, 3.0])
+def test_of_specks_hardly_a_surface_is_made(each):
+    width = BEARINGS[1]
+    surfaces, plain = 0, 0
+    for seed in range(30):
+        echoes = TurnEchoes.of(turn(specks(seed, each)))
+        numbers = surfaces_of(echoes, CONFIG)
+        beams = np.bincount(numbers[numbers >= 0])
+        plain += np.count_nonzero(beams >= CONFIG.surface_beams)
+        surfaces += np.count_nonzero(beams >= beams_by_chance(echoes, numbers, CONFIG, width))
+    assert plain > 30 * 20
+    assert surfaces < plain / 8
+
+
+def test_the_more_specks_the_more_beams_a_surface_needs():
+    few, many = (np.mean([chance(turn(specks(s, each))) for s in range(5)]) for each in (0.5, 3.0))
+    assert many > few + 1.0
+
+
+def test_farther_off_a_surface_needs_more_beams():
+    """Neighbouring beams are farther apart there, and a surface may lie in between."""
+    near, far = (
+        np.mean([chance(turn(specks(seed, 2.0, at, at + 10.0))) for seed in range(5)])
+        for at in (1.0, 30.0)
+    )
+    assert far > near + 1.0
+
+
+def test_beams_that_hear_the_same_speck_are_one_look():
+    readings = turn(specks(3, 2.0))
+    narrow = chance(readings, BEARINGS[1])
+    assert chance(readings, 0.5 * BEARINGS[1]) == pytest.approx(narrow)
+    assert chance(readings, 3.0 * BEARINGS[1]) - 1.0 == pytest.approx(3.0 * (narrow - 1.0))
+
+
+def test_a_wall_stays_among_specks():
+    found = kept(turn(wall(), specks(5, 1.0, farthest=60.0)))
+    for echoes, ranges in zip(wall(), found, strict=True):
+        assert {distance for distance, _ in echoes} <= set(ranges)
+
+
+@pytest.mark.parametrize("beams", [8, 16, 66, BEAMS])
+def test_a_tank_stays_where_all_ranges_are_alike(beams):
+    rng = np.random.default_rng(1)
+    square = 2.0 / np.maximum(np.abs(np.cos(BEARINGS)), np.abs(np.sin(BEARINGS)))
+    for ranges in (np.full(BEAMS, 3.0), square):
+        scene = [[(r, rng.normal(48.0, 1.0))] for r in ranges + rng.normal(0.0, 0.02, BEAMS)]
+        assert all(kept(turn(scene)[:beams]))

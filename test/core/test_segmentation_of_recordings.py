@@ -35,7 +35,11 @@ def segmented(beams):
     segmenter = BeamSegmenter(Sonar(), Segmentation())
     readings = [segmenter.segment(beam) for beam in beams]
     turns = [readings[start : start + TURN] for start in range(0, len(readings), TURN)]
-    return [reading for turn in turns for reading in reject_ghosts(turn, Segmentation())]
+    return [
+        reading
+        for turn in turns
+        for reading in reject_ghosts(turn, Segmentation(), Sonar().beam_width)
+    ]
 
 
 def first_returns(readings):

@@ -129,7 +129,7 @@ class Segmentation:
         1.6, "range at which the hull's echo has died out", unit="m", minimum=0.0, maximum=20.0
     )
     candidates: int = parameter(
-        3, "echoes kept of a beam, the nearest first", minimum=1, maximum=20
+        6, "echoes kept of a beam, the nearest first", minimum=1, maximum=20
     )
     ghost_contrast: float = parameter(
         16.0,
@@ -142,7 +142,8 @@ class Segmentation:
     surface_beams: int = parameter(
         3,
         "beams that see a surface, at least; a beam is wider than a step, so even a pole is in"
-        " several, a speck in the water in one or two",
+        " several, a speck in the water in one or two; more where so many echoes are heard that"
+        " chance makes chains of them",
         minimum=1,
         maximum=20,
     )

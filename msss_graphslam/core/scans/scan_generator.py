@@ -118,7 +118,7 @@ class ScanGenerator:
         turn = self._read(part)
         with self._stage("scan_generation"):
             heard = around(turn.readings, self._before)
-            heard = reject_ghosts(heard, self._configuration.segmentation)
+            heard = self._without_ghosts(heard)
             turn.readings = heard[: len(turn.readings)]
             scan = generate_scan(turn, self._history, self._configuration.sonar)
         self._is_told |= len(scan.points) >= TELLING
@@ -174,8 +174,12 @@ class ScanGenerator:
     def _laid_out(self, turn: Turn[Reading]) -> Scan:
         with self._stage("scan_generation"):
             if turn.usable:
-                turn.readings = reject_ghosts(turn.readings, self._configuration.segmentation)
+                turn.readings = self._without_ghosts(turn.readings)
             return generate_scan(turn, self._history, self._configuration.sonar)  # line 8
+
+    def _without_ghosts(self, readings: list[Reading]) -> list[Reading]:
+        config = self._configuration
+        return reject_ghosts(readings, config.segmentation, config.sonar.beam_width)
 
 
 def around(part: list[Reading], before: list[Reading]) -> list[Reading]:
