@@ -53,8 +53,8 @@ matched with it. So a scan is compared with a bounded number of others and tied 
 `association.most` of them, and the front end keeps no points of it. Twelve scans later it leaves
 the smoother (`core/graph/released.py`) and stays where it stood to one of the keyframes it was
 located by; joint smoothing in the end takes in all of them again. What still grows is the memory
-of what was measured and published, of poses and of edges, and the time to go through them. Scans as
-the trajectory lays them out in the end are made when they are asked for.
+of what was measured and published, of poses and of edges, and the time to go through them. Scans
+as the trajectory lays them out in the end are made when they are asked for.
 
 ## The whole
 
