@@ -71,10 +71,10 @@ def beams_by_chance(
 ) -> float:
     """Return of how many beams chance makes no more than one surface in such a turn.
 
-    Echoes that have nothing to do with each other continue each other, too, the more so the more
-    there are and the farther off: of beams far apart (``surfaces`` (n, k) by number left alone) a
-    share p does. From N echoes on, chance makes N p^(b - 1) chains of b looks. Beams closer than
-    ``beam_width`` [rad] hear the same specks: together they are one look.
+    Echoes that have nothing to do with each other continue each other, too, the more often the
+    more there are and the farther off they are: a share p of N echoes does with those of beams far
+    apart, unless both are of one of the ``surfaces`` (n, k). So chance makes N p^(b - 1) chains of
+    b looks. Beams closer than ``beam_width`` [rad] hear the same specks: they are one look.
     """
     count = int(np.isfinite(echoes.ranges).sum())
     by_chance = np.zeros(echoes.ranges.size, dtype=bool)
