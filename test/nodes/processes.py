@@ -19,7 +19,7 @@ from types import TracebackType
 from typing import Any, Self
 
 import rclpy
-from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 __all__ = [
@@ -198,12 +198,10 @@ class SpunNode(Node):
     create_timer = _in_the_spinning_thread(Node.create_timer)
     destroy_client = _in_the_spinning_thread(Node.destroy_client)
 
-    _spinner: Executor | None = None
     _thread: threading.Thread | None = None
 
-    def spin(self, executor: Executor) -> None:
-        """Start to spin."""
-        self._spinner = executor
+    def spin(self) -> None:
+        """Start to spin, in the executor that has the node."""
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
@@ -216,17 +214,16 @@ class SpunNode(Node):
 
     def do(self, make: Callable[[], Any]) -> Any:
         """Return what this makes in the thread that spins, before and after that in this one."""
-        spins = self._thread is not None and self._thread.is_alive()
-        if self._spinner is None or not spins or threading.current_thread() is self._thread:
+        thread = self._thread
+        if thread is None or not thread.is_alive() or thread is threading.current_thread():
             return make()
         made: Future[Any] = Future()
-        self._spinner.create_task(_fulfil, made, make)
+        self.executor.create_task(_fulfil, made, make)
         return made.result(LIMIT)
 
     def _spin(self) -> None:
-        assert self._spinner is not None
         while not self._stop.is_set():
-            self._spinner.spin_once(timeout_sec=0.05)
+            self.executor.spin_once(timeout_sec=0.05)
 
 
 def _fulfil(made: Future[Any], make: Callable[[], Any]) -> None:
@@ -250,7 +247,7 @@ class TestNode:
         self.executor.add_node(self.node)
 
     def __enter__(self) -> Self:
-        self.node.spin(self.executor)
+        self.node.spin()
         return self
 
     def __exit__(
