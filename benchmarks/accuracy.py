@@ -88,7 +88,7 @@ def demanded_table(results: Results) -> Table:
     """Return the conditions that have bars: each figure's mean beside its bar."""
     header = ["condition", "anchored", "turned", "aligned", "worst / mean", "online", "jump"]
     rows = [[place.name, *_cells(place, results[place])] for place in DEMANDED]
-    return Table("Bars", [*header, "start to end"], rows)
+    return Table("Bars", [*header, "after turns", "start to end"], rows)
 
 
 def missed_bars(results: Results) -> list[str]:
@@ -137,6 +137,7 @@ def _cells(condition: Condition, series: Series) -> list[str]:
         against(uneven, UNEVEN),
         against(series.mean("online"), limits.get("online")),
         against(series.worst("plain_jump"), JUMP),
+        str(series.worst_of("plain_jump").jump_turns),
         against(series.mean("gap"), limits.get("gap")),
     ]
 

@@ -2,32 +2,44 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far the pose that is known online jumps when a scan corrects it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from msss_graphslam.core.types import Array, ConstraintKind, Estimate
 from msss_graphslam.evaluation.errors import interpolate
 
-__all__ = ["FAR", "first_far_closures", "largest_jumps"]
+__all__ = ["FAR", "Jumps", "first_far_closures", "largest_jumps"]
 
 FAR = 19
 """A loop closure is far that spans more keyframes than this."""
 
 
-def largest_jumps(estimate: Estimate) -> tuple[float, float]:
-    """Return the largest jump [m], and the largest one away from a first far loop closure.
+@dataclass(frozen=True, slots=True)
+class Jumps:
+    """The ``largest`` jump [m], and the largest ``plain`` one, away from a first far loop closure.
 
-    A jump is the step from one output to the next beyond that of dead reckoning.
+    The plain one came after so many whole turns: after the first nothing but dead reckoning had
+    told of the motion.
     """
+
+    largest: float = 0.0
+    plain: float = 0.0
+    turns: int = 0
+
+
+def largest_jumps(estimate: Estimate) -> Jumps:
+    """Return the largest steps from one output to the next beyond those of dead reckoning."""
     reckoned, covered = interpolate(estimate.dead_reckoning, estimate.online.stamps_ns)
     stamps = estimate.online.stamps_ns[covered]
     jumps = _beyond(estimate.online.planar[covered], reckoned[covered])
     if not jumps.size:
-        return 0.0, 0.0
+        return Jumps()
     ends = np.array([frame.scan.end_stamp_ns for frame in estimate.keyframes], dtype=np.int64)
-    corrected_by = np.searchsorted(ends, stamps[1:], side="right") - 1
-    plain = ~np.isin(corrected_by, first_far_closures(estimate))
-    return float(jumps.max()), float(jumps.max(where=plain, initial=0.0))
+    turns = np.searchsorted(ends, stamps[1:], side="right")
+    plain = np.where(np.isin(turns - 1, first_far_closures(estimate)), 0.0, jumps)
+    return Jumps(float(jumps.max()), float(plain.max()), int(turns[plain.argmax()]))
 
 
 def first_far_closures(estimate: Estimate) -> NDArray[np.int64]:

@@ -61,9 +61,10 @@ class Accuracy:
     Mean position errors: ``anchored`` at the start, ``aligned`` to the truth, ``online`` as
     published at the time, anchored; ``gap`` between start and end, and the vehicle's ``true_gap``;
     ``jump``, the largest of the pose known online, and ``plain_jump`` without those of a first far
-    loop closure. ``turned`` is by how much the whole trajectory is turned [deg]. By ``yaw`` [deg]
-    the head is turned against the DVL, and ranges are ``scale`` times as long, as the estimator
-    sees it, both with their stated deviations, infinite where it says nothing of them.
+    loop closure, which came after ``jump_turns`` whole turns. ``turned`` is by how much the whole
+    trajectory is turned [deg]. By ``yaw`` [deg] the head is turned against the DVL, and ranges are
+    ``scale`` times as long, as the estimator sees it, both with their stated deviations, infinite
+    where it says nothing of them.
     """
 
     anchored: float
@@ -73,6 +74,7 @@ class Accuracy:
     true_gap: float
     jump: float = 0.0
     plain_jump: float = 0.0
+    jump_turns: int = 0
     turned: float = 0.0
     yaw: float = 0.0
     yaw_deviation: float = np.inf
@@ -84,15 +86,16 @@ def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
     """Measure an estimate against the truth."""
     final = position_errors(estimate.trajectory, truth)
     online = position_errors(estimate.online, truth)
-    jump, plain_jump = largest_jumps(estimate)
+    jumps = largest_jumps(estimate)
     return Accuracy(
         anchored=float(np.mean(final.anchored)),
         aligned=float(np.mean(final.aligned)),
         online=float(np.mean(online.anchored)),
         gap=start_end_gap(estimate.trajectory),
         true_gap=start_end_gap(truth),
-        jump=jump,
-        plain_jump=plain_jump,
+        jump=jumps.largest,
+        plain_jump=jumps.plain,
+        jump_turns=jumps.turns,
         turned=float(np.degrees(np.abs(np.mean(final.heading)))),
         **_calibration(estimate.sonar_calibration),
     )

@@ -33,6 +33,10 @@ class Series:
         """Return the largest over the seeds [m]."""
         return float(np.max(self.values(figure)))
 
+    def worst_of(self, figure: str) -> Accuracy:
+        """Return the result of the seed in which the figure is largest."""
+        return max(self.results, key=attrgetter(figure))
+
     def unevenness(self, figure: str) -> float:
         """Return by how much the worst seed exceeds the mean, as a factor."""
         return self.worst(figure) / self.mean(figure)

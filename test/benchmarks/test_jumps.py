@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from synthetic_run import BEAMS_A_TURN, synthetic_run
 
-from benchmarks.jumps import FAR, first_far_closures, largest_jumps
+from benchmarks.jumps import FAR, Jumps, first_far_closures, largest_jumps
 from msss_graphslam.core.types import Constraint, ConstraintKind, Estimate, Trajectory
 
 TURNS = 50
@@ -29,7 +29,7 @@ def jumping(after: dict[int, float], *closures: Constraint) -> Estimate:
 
 
 def test_without_a_jump_there_is_none() -> None:
-    assert largest_jumps(jumping({})) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert largest_jumps(jumping({})).largest == pytest.approx(0.0, abs=1e-12)
 
 
 def test_dead_reckoning_that_is_turned_does_not_jump() -> None:
@@ -38,22 +38,27 @@ def test_dead_reckoning_that_is_turned_does_not_jump() -> None:
     poses[:, :2] = poses[:, 1::-1] * [-1.0, 1.0]
     poses[:, 5] += 0.5 * np.pi
     turned = replace(estimate, online=Trajectory(estimate.online.stamps_ns, poses))
-    assert largest_jumps(turned) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert largest_jumps(turned).largest == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_largest_jump_counts() -> None:
-    assert largest_jumps(jumping({4: 0.3, 9: -0.7})) == pytest.approx((0.7, 0.7))
+    found = largest_jumps(jumping({4: 0.3, 9: -0.7}))
+    assert (found.largest, found.plain) == pytest.approx((0.7, 0.7))
+    assert found.turns == 10
 
 
 def test_a_jump_at_a_first_far_closure_is_excused() -> None:
     estimate = jumping({25: 3.0, 30: 0.4}, closure(2, 25))
-    assert largest_jumps(estimate) == pytest.approx((3.0, 0.4))
+    found = largest_jumps(estimate)
+    assert (found.largest, found.plain) == pytest.approx((3.0, 0.4))
+    assert found.turns == 31
 
 
 @pytest.mark.parametrize("keyframe", [24, 26])
 def test_a_jump_beside_it_is_not(keyframe: int) -> None:
     estimate = jumping({keyframe: 3.0}, closure(2, 25))
-    assert largest_jumps(estimate) == pytest.approx((3.0, 3.0))
+    found = largest_jumps(estimate)
+    assert (found.largest, found.plain) == pytest.approx((3.0, 3.0))
 
 
 @pytest.mark.parametrize(
@@ -74,4 +79,4 @@ def test_which_far_closures_are_first(closures: list[Constraint], expected: list
 def test_a_run_of_one_beam_cannot_jump() -> None:
     estimate = jumping({})
     one = Trajectory(estimate.online.stamps_ns[:1], estimate.online.poses[:1])
-    assert largest_jumps(replace(estimate, online=one)) == (0.0, 0.0)
+    assert largest_jumps(replace(estimate, online=one)) == Jumps()

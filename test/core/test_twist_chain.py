@@ -41,6 +41,17 @@ def test_each_scan_is_as_doubtful_as_dead_reckoning_says() -> None:
     np.testing.assert_allclose(covariance, 100.0 * BLIND, rtol=1e-6)
 
 
+@pytest.mark.parametrize(("sway", "taken"), [(0.01, 0.03), (0.03, 0.03), (0.05, 0.05)])
+def test_sway_is_no_surer_than_surge(sway: float, taken: float) -> None:
+    stated = np.diag([0.03, sway, 0.002]) ** 2
+    stated[0, 1] = stated[1, 0] = 0.5 * 0.03 * sway
+    made = [replace(scan, twist_covariance=stated) for scan in scans(1)]
+    covariance = equations(NEW, np.zeros((1, 3)), made).covariances()[1]
+    expected = np.diag([0.03, taken, 0.002]) ** 2
+    expected[0, 1] = expected[1, 0] = 0.5 * 0.03 * taken
+    np.testing.assert_allclose(covariance, 100.0 * expected, rtol=1e-4)
+
+
 @pytest.mark.parametrize("persistence", [LASTING, NEW])
 def test_errors_that_last_add_up(persistence: Persistence) -> None:
     shared = persistence.over(10.0, BLIND)[0]

@@ -10,6 +10,9 @@ from msss_graphslam.core.types import Constraint
 
 __all__ = ["defect"]
 
+ROUNDED, ROUNDING = 1e-15, 1e-6
+"""Entries of a covariance that differ by so much, or by such a share, are the same but rounded."""
+
 
 def defect(constraint: Constraint, keyframes: int) -> str:
     """Say why a constraint may not enter a graph of so many keyframes, or return ''."""
@@ -20,7 +23,7 @@ def defect(constraint: Constraint, keyframes: int) -> str:
     covariance = constraint.covariance
     if not (np.isfinite(constraint.relative_pose).all() and np.isfinite(covariance).all()):
         return "not_finite"
-    if not np.allclose(covariance, covariance.T, rtol=1e-6, atol=1e-15):
+    if (np.abs(covariance - covariance.T) > ROUNDED + ROUNDING * np.abs(covariance)).any():
         return "covariance_not_symmetric"
     if np.linalg.eigvalsh(covariance)[0] <= 0.0:
         return "covariance_not_positive_definite"

@@ -166,17 +166,24 @@ def _repetition(pairs: MatchedPairs, hessian: Array) -> float:
 
     A point is part of NEIGHBOURS lines, and lies in several beams' width. What errors have in
     common in the directions of the pose is what the fit has taken for motion: the residuals have
-    lost the share ``taken`` of what they would say the same. Sum under Bartlett's window.
+    lost the share ``taken`` of what they would say the same.
     """
     errors = pairs.weights * pairs.residuals
     rows = pairs.jacobian * np.sqrt(pairs.weights)[:, None]
-    count, square = len(errors), float(errors @ errors)
+    square = float(errors @ errors)
     if square == 0.0:
         return 1.0
-    together, seen = 1.0, rows.T @ rows
-    for lag in range(1, min(NEIGHBOURS, count - 1) + 1):
-        share = 2.0 * (1.0 - lag / (NEIGHBOURS + 1.0))
-        together += share * float(errors[lag:] @ errors[:-lag]) / square
-        seen += share * (rows[lag:].T @ rows[:-lag])
-    taken = float(np.trace(np.linalg.solve(hessian, seen))) / count
+    common = _common_to_neighbours(np.column_stack([errors, rows]))
+    together = float(common[0, 0]) / square
+    taken = float(np.trace(np.linalg.solve(hessian, common[1:, 1:]))) / len(errors)
     return max(together / max(1.0 - taken, LEAST_LEFT), 1.0)
+
+
+def _common_to_neighbours(columns: Array) -> Array:
+    """Return the products (k, k) of columns (n, k) at all lags up to NEIGHBOURS, summed.
+
+    Bartlett's window weighs them: that of all sums over NEIGHBOURS + 1 rows with themselves.
+    """
+    window = np.ones(NEIGHBOURS + 1)
+    sums = np.array([np.convolve(column, window) for column in columns.T])
+    return np.asarray(sums @ sums.T) / len(window)

@@ -40,7 +40,7 @@ class TwistChain:
     def __init__(self, scans: Sequence[Scan], persistence: Persistence) -> None:
         count = len(scans)
         self._before = np.maximum(np.arange(count) - 1, 0)
-        spreads = _doubts(scans) + LEAST_VARIANCE * np.eye(3)
+        spreads = _steered(_doubts(scans) + LEAST_VARIANCE * np.eye(3))
         self.durations = durations_of(scans)
         kept = [
             persistence.over(interval, spread)
@@ -100,3 +100,17 @@ def _doubts(scans: Sequence[Scan]) -> Array:
     widest = known[np.argmax(np.trace(known, axis1=1, axis2=2))]
     reckoned = np.any(known, axis=(1, 2), keepdims=True)
     return np.asarray(np.where(reckoned, known, widest))
+
+
+def _steered(doubts: Array) -> Array:
+    """Return covariances (n, 3, 3) of twist errors in which sway is no surer than surge.
+
+    A vehicle that keeps its line steers against what pushes it: turn after turn its heading is off
+    its way by as much as it drifts aside. Taken for small and independent of the heading, sway
+    would make slow motion likelier than it was, and a map too short where walls say little of the
+    way along them.
+    """
+    surge, sway = doubts[:, 0, 0], doubts[:, 1, 1]
+    wider = np.ones((len(doubts), 3))
+    wider[:, 1] = np.sqrt(np.maximum(surge / sway, 1.0))
+    return np.asarray(wider[:, :, None] * doubts * wider[:, None, :])
