@@ -40,7 +40,7 @@ class TwistChain:
     def __init__(self, scans: Sequence[Scan], persistence: Persistence) -> None:
         count = len(scans)
         self._before = np.maximum(np.arange(count) - 1, 0)
-        spreads = _steered(_doubts(scans) + LEAST_VARIANCE * np.eye(3))
+        spreads = _doubts(scans) + LEAST_VARIANCE * np.eye(3)
         self.durations = durations_of(scans)
         kept = [
             persistence.over(interval, spread)
@@ -48,7 +48,7 @@ class TwistChain:
         ]
         self._kept = np.vstack([np.zeros(3), *kept])
         new = 1.0 - self._kept[:, :, None] * self._kept[:, None, :]
-        self._information = np.linalg.inv(spreads * new)
+        self._information = np.linalg.inv(_steered(spreads) * new)
 
     def add_to(self, equations: NormalEquations, twists: Array, by_keyframes: Array) -> None:
         """Add what is known of the twist errors (n, 3).
