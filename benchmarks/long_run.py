@@ -178,7 +178,8 @@ def _edges(estimate: Estimate) -> dict[str, Array]:
 
 def _errors(estimate: Estimate, truth: Trajectory) -> dict[str, Array]:
     final, online = (
-        position_errors(trajectory, truth) for trajectory in (estimate.trajectory, estimate.online)
+        position_errors(trajectory, truth, estimate.trajectory)
+        for trajectory in (estimate.trajectory, estimate.online)
     )
     return {"online_m": online.anchored, "final_m": final.anchored, "aligned_m": final.aligned}
 

@@ -85,7 +85,7 @@ class Accuracy:
 def accuracy(estimate: Estimate, truth: Trajectory) -> Accuracy:
     """Measure an estimate against the truth."""
     final = position_errors(estimate.trajectory, truth)
-    online = position_errors(estimate.online, truth)
+    online = position_errors(estimate.online, truth, estimate.trajectory)
     jumps = largest_jumps(estimate)
     return Accuracy(
         anchored=float(np.mean(final.anchored)),

@@ -21,6 +21,7 @@ from launch_ros.substitutions import FindPackageShare
 
 PACKAGE = "msss_graphslam"
 REPLAY = {"bag": str, "rate": float, "start_offset": float, "loop": bool}
+LISTENING = ["dead_reckoning", "scan_generation", "back_end"]
 SLAM = ("namespace", "params_file", "estimator", "sonar", "output", "record")
 
 
@@ -120,6 +121,7 @@ def replay() -> Node:
         name: ParameterValue(LaunchConfiguration(name), value_type=kind)
         for name, kind in REPLAY.items()
     }
+    parameters["wait_for"] = LISTENING
     return Node(
         package=PACKAGE,
         executable="bag_replay",

@@ -175,8 +175,8 @@ class Launched:
             )
         )
 
-    def _typed(self, parameter: ParameterValue | str) -> Any:
-        if isinstance(parameter, str):
+    def _typed(self, parameter: ParameterValue | str | list[str]) -> Any:
+        if not isinstance(parameter, ParameterValue):
             return parameter
         text = self.text(parameter.value)
         if parameter.value_type is not bool:

@@ -69,7 +69,7 @@ def assess(record: RunRecord) -> Assessment:
                 DEAD_RECKONING: position_errors(estimate.dead_reckoning, record.truth),
                 estimate.estimator: position_errors(estimate.trajectory, record.truth),
             }
-            online = position_errors(estimate.online, record.truth)
+            online = position_errors(estimate.online, record.truth, estimate.trajectory)
             keyframes = _keyframe_errors(record, errors[estimate.estimator])
         except UserError as error:
             note = str(error)

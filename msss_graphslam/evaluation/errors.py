@@ -62,19 +62,20 @@ class PoseErrors:
     left_out: int
 
 
-def position_errors(estimate: Trajectory, truth: Trajectory) -> PoseErrors:
+def position_errors(
+    estimate: Trajectory, truth: Trajectory, launched_as: Trajectory | None = None
+) -> PoseErrors:
     """Compare an estimate with the truth.
 
     Anchored as in Section VIII-A: the truth is shifted so that the first common position is the
-    estimate's, and nothing is rotated, so that an error of the heading at launch counts. Raises
-    UserError where the truth covers none of the estimate's stamps.
+    estimate's, and nothing is rotated, so that an error of the heading at launch counts. An
+    estimate that may begin later is anchored where ``launched_as``, in the same frame, begins.
+    Raises UserError where the truth covers none of the stamps.
     """
-    true_poses, covered = interpolate(truth, estimate.stamps_ns)
-    if not covered.any():
-        raise UserError("the ground truth covers no time of the trajectory: compare their stamps")
+    true_poses, covered = _covered(estimate, truth)
     poses = estimate.planar[covered]
     anchored = true_poses[covered]
-    anchored[:, :2] += poses[0, :2] - anchored[0, :2]
+    anchored[:, :2] += _launch_offset(estimate if launched_as is None else launched_as, truth)
     return PoseErrors(
         stamps_ns=estimate.stamps_ns[covered],
         truth=anchored,
@@ -111,6 +112,22 @@ def start_end_gap(trajectory: Trajectory) -> float:
     It is an error only where the vehicle came back to its start.
     """
     return float(np.linalg.norm(trajectory.planar[-1, :2] - trajectory.planar[0, :2]))
+
+
+def _covered(
+    estimate: Trajectory, truth: Trajectory
+) -> tuple[Array, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
+    true_poses, covered = interpolate(truth, estimate.stamps_ns)
+    if not covered.any():
+        raise UserError("the ground truth covers no time of the trajectory: compare their stamps")
+    return true_poses, covered
+
+
+def _launch_offset(estimate: Trajectory, truth: Trajectory) -> Array:
+    """Return what is added to true positions (2,) [m] to make the first common one agree."""
+    true_poses, covered = _covered(estimate, truth)
+    first = int(np.argmax(covered))
+    return np.asarray(estimate.planar[first, :2] - true_poses[first, :2])
 
 
 def _distances(first: Array, second: Array) -> Array:

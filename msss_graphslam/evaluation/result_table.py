@@ -62,11 +62,11 @@ def evaluate_directory(directory: ResultDirectory, truth: Trajectory) -> list[Re
     """Compare the trajectories that a run left with a truth; UserError where that cannot be."""
     corrected, online, dead_reckoning = directory.read_trajectories()
     return [
-        _row(name, trajectory, position_errors(trajectory, truth))
-        for name, trajectory in (
-            (DEAD_RECKONING, dead_reckoning),
-            ("trajectory", corrected),
-            ("online", online),
+        _row(name, trajectory, position_errors(trajectory, truth, launched_as))
+        for name, trajectory, launched_as in (
+            (DEAD_RECKONING, dead_reckoning, dead_reckoning),
+            ("trajectory", corrected, corrected),
+            ("online", online, corrected),
         )
     ]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.files import ros_parameters
 from msss_graphslam.live.process import Command
-from msss_graphslam.nodes.names import DRIVER, FED, RECORDER, REPLAY, SLAM_NODES
+from msss_graphslam.nodes.names import AWAITED, DRIVER, RECORDER, REPLAY, SLAM_NODES
 
 __all__ = ["Setup", "command_table", "saving_order"]
 
@@ -91,7 +91,7 @@ def _parameters(name: str, setup: Setup) -> dict[str, _Value]:
 
 def _listeners(setup: Setup) -> list[str]:
     """Return the nodes that a replay has to wait for."""
-    return [DRIVER] * setup.driver + [*FED] + [RECORDER] * (setup.record is not None)
+    return [DRIVER] * setup.driver + [*AWAITED] + [RECORDER] * (setup.record is not None)
 
 
 def _parameter_file(values: Mapping[str, _Value]) -> str:

@@ -44,6 +44,14 @@ def test_anchored_errors_by_hand():
     assert statistics.max == pytest.approx(0.4)
 
 
+def test_an_estimate_that_begins_late_has_the_error_of_its_frame():
+    truth = trajectory(range(4), [[float(x), 0.0, 0.0] for x in range(4)])
+    whole = trajectory(range(4), [[float(x), 0.0, 0.0] for x in range(4)])
+    late = trajectory([2, 3], [[2.0, 0.7, 0.0], [3.0, 0.1, 0.0]])
+    np.testing.assert_allclose(position_errors(late, truth, whole).anchored, [0.7, 0.1])
+    np.testing.assert_allclose(position_errors(late, truth).anchored, [0.0, 0.6])
+
+
 def test_depth_is_no_error():
     truth = trajectory([0, 1], [[0, 0, 0], [1, 0, 0]])
     estimate = trajectory([0, 1], [[0, 0, 0], [1, 0, 0]])

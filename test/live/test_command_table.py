@@ -47,16 +47,16 @@ def test_the_replay_comes_last_and_runs_once(tmp_path: Path) -> None:
         "bag": str(tmp_path / "123"),
         "rate": 20.0,
         "conclude": False,
-        "wait_for": ["dead_reckoning", "scan_generation", "bag_recorder"],
+        "wait_for": ["dead_reckoning", "scan_generation", "back_end", "bag_recorder"],
     }
     assert own_parameters(tmp_path, "bag_recorder")["output"] == str(tmp_path / "new")
     assert own_parameters(tmp_path, "back_end")["recording"] == str(tmp_path / "123")
 
 
-def test_a_replay_waits_for_those_that_it_feeds(tmp_path: Path) -> None:
+def test_a_replay_waits_for_those_that_would_miss_its_beginning(tmp_path: Path) -> None:
     command_table(setup_of(tmp_path, replay=tmp_path), tmp_path)
-    fed = ["dead_reckoning", "scan_generation"]
-    assert own_parameters(tmp_path, "bag_replay")["wait_for"] == fed
+    listening = ["dead_reckoning", "scan_generation", "back_end"]
+    assert own_parameters(tmp_path, "bag_replay")["wait_for"] == listening
 
 
 def test_the_driver_of_the_head_comes_first_and_takes_the_source_of_the_configuration(
@@ -78,6 +78,7 @@ def test_in_a_replay_the_driver_reads_the_recorded_bytes(tmp_path: Path) -> None
         "micron_driver",
         "dead_reckoning",
         "scan_generation",
+        "back_end",
         "bag_recorder",
     ]
 

@@ -50,6 +50,11 @@ def test_it_leaves_what_run_leaves(tank: SimulatedBag, tmp_path: Path, ros: Doma
     assert left == {path.name for path in (tmp_path / "run").iterdir()} | {"log"}
     offline, online = (np.loadtxt(tmp_path / name / "trajectory.tum") for name in ("run", "live"))
     np.testing.assert_allclose(online, offline, atol=1e-6)
+    known, published = (
+        np.loadtxt(tmp_path / name / "online.tum")[:, 0] for name in ("run", "live")
+    )
+    assert published[0] == pytest.approx(known[0], abs=0.05)
+    assert np.diff(published).max() < 0.5
 
 
 def test_ctrl_c_saves_and_records_what_there_was(

@@ -11,7 +11,9 @@ from sample_bags import START_NS
 
 from msss_graphslam.messages import topics
 from msss_graphslam.nodes.replay.lead import header_stamp_ns
+from msss_graphslam.nodes.replay.links import listeners
 from msss_graphslam.recordings.reader import open_recording
+from msss_graphslam.ros.diagnostics import TOPIC
 from msss_graphslam.ros.messages import make, message_class
 from msss_graphslam.ros.qos import STREAM, profile_of
 
@@ -27,6 +29,8 @@ class Listener(TestNode):
         super().__init__(of, "dead_reckoning", namespace)
         self.received: defaultdict[str, list[bytes]] = defaultdict(list)
         self.called: list[str] = []
+        kind = message_class("diagnostic_msgs/msg/DiagnosticArray")
+        self._diagnostics = self.node.create_publisher(kind, TOPIC, 10)
         for topic in SENSORS:
             name = remapped if remapped and topic == topics.SONAR_PING else topic.name
             self._listen(topic, name)
@@ -45,6 +49,13 @@ class Listener(TestNode):
             return response
 
         self.node.create_service(TRIGGER, service, serve)
+
+    def tell_listeners(self, topic: topics.Topic, count: int) -> None:
+        """Say in the diagnostics whom the publisher of dead reckoning's reaches."""
+        row = make("diagnostic_msgs/msg/KeyValue", key=listeners(topic.name), value=str(count))
+        name = self.node.get_fully_qualified_name()
+        status = make("diagnostic_msgs/msg/DiagnosticStatus", name=name, values=[row])
+        self._diagnostics.publish(make("diagnostic_msgs/msg/DiagnosticArray", status=[status]))
 
     def _listen(self, topic: topics.Topic, name: str) -> None:
         kind = message_class(topic.type_name)

@@ -64,6 +64,24 @@ def test_nothing_is_sent_before_everybody_listens(tmp_path: Path, at: Domain) ->
             wait_until(lambda: len(pings) == 50 and listener.count == 250, "all messages")
 
 
+def test_nothing_is_sent_before_the_poses_that_come_of_it_are_heard(
+    tmp_path: Path, at: Domain
+) -> None:
+    bag = write_bag(tmp_path / "dive")
+    names = "[dead_reckoning, back_end]"
+    with Listener(at) as listener, replay(at, bag, wait_for=names) as process:
+        process.wait_for_output(r"waiting for back_end \(pose\)")
+        with TestNode(at, "back_end") as late:
+            kind = message_class(topics.POSE.type_name)
+            late.node.create_subscription(kind, "pose", lambda _: None, STREAM)
+            listener.tell_listeners(topics.POSE, 0)
+            process.wait_for_output(r"(?s)(waiting for back_end \(pose\).*){2}")
+            assert listener.count == 0
+            listener.tell_listeners(topics.POSE, 1)
+            assert process.wait() == 0
+            wait_until(lambda: listener.count == 250, "all messages")
+
+
 def test_bytes_alone_are_said_to_want_the_driver(tmp_path: Path, at: Domain) -> None:
     bag = write_bag(tmp_path / "dive", raw_messages(packets(3)))
     waited = {"wait_for": "[dead_reckoning, scan_generation]"}

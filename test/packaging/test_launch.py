@@ -136,7 +136,13 @@ def test_a_replay_runs_on_its_own_clock_and_ends_everything() -> None:
     launched = run(REPLAY, bag="pond", rate="20", loop="True", namespace="auv", output="out")
     assert names(launched) == [*SLAM_NODES, "bag_replay"]
     replay = started(launched, "bag_replay")
-    assert replay.parameters == {"bag": "pond", "rate": 20.0, "start_offset": 0.0, "loop": True}
+    assert replay.parameters == {
+        "bag": "pond",
+        "rate": 20.0,
+        "start_offset": 0.0,
+        "loop": True,
+        "wait_for": ["dead_reckoning", "scan_generation", "back_end"],
+    }
     assert isinstance(replay.parameters["rate"], float)
     assert [node.executable for node in launched.nodes if node.ends_all] == ["bag_replay"]
     assert all(started(launched, name).parameters["use_sim_time"] for name in SLAM_NODES)

@@ -11,7 +11,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from msss_graphslam.messages import topics
 from msss_graphslam.nodes.names import DRIVER
-from msss_graphslam.nodes.replay.relayed_pings import RelayedPings
+from msss_graphslam.nodes.replay.links import MADE_BY, Links
 
 __all__ = ["Audience"]
 
@@ -21,7 +21,8 @@ _LISTENS_TO = {
         topic.name for topic in (topics.SONAR_PING, topics.IMU, topics.PRESSURE, topics.DVL)
     ),
     "scan_generation": (topics.SONAR_PING.name,),
-    "bag_recorder": tuple(topic.name for topic in topics.INPUTS),
+    "back_end": (topics.POSE.name,),
+    "bag_recorder": tuple(topic.name for topic in (*topics.INPUTS, topics.ODOM, topics.POSE)),
 }
 
 
@@ -44,8 +45,12 @@ class Audience:
         self.names = names
         self._node = node
         self._publishers = publishers
-        is_relayed = DRIVER in names and topics.SONAR_PING.name not in publishers
-        self._relayed = RelayedPings(node) if is_relayed else None
+        self._links = Links(node)
+        self._made = {
+            topic
+            for topic, source in MADE_BY.items()
+            if source in names and topic not in publishers
+        }
 
     def missing(self, but: Collection[str] = ()) -> dict[str, str]:
         """Return by node what it does not listen to yet; ``but`` are nodes left out."""
@@ -70,10 +75,9 @@ class Audience:
             and self._are_matched(topic, endpoints)
         }
         known = _LISTENS_TO.get(name, ())
-        wanted = [topic for topic in known if topic in self._publishers]
-        if self._relayed and topics.SONAR_PING.name in known:
-            wanted.append(topics.SONAR_PING.name)
-            joined |= {topics.SONAR_PING.name} if self._relayed.reach(name) else set()
+        made = self._made.intersection(known)
+        joined |= {topic for topic in made if self._links.reach(topic, name)}
+        wanted = [topic for topic in known if topic in made or topic in self._publishers]
         if wanted:
             return [topic for topic in wanted if topic not in joined]
         return [] if joined else ["any topic"]

@@ -24,7 +24,7 @@ _DESCRIBED: dict[str, tuple[Any, str]] = {
     "wait_for": (
         list(FED),
         "nodes in the own namespace that must listen before anything is sent; [''] for none;"
-        " by default also micron_driver where sonar/raw is replayed",
+        " with these two also micron_driver where sonar/raw is replayed",
     ),
     "clock": (True, "publish /clock"),
     "conclude": (True, "at the end have every node work off what it holds, and save"),
@@ -60,8 +60,8 @@ class ReplaySettings:
 
     def awaited(self, replayed: Collection[str]) -> list[str]:
         """Return the nodes to wait for, given the names of the topics that are replayed."""
-        if self.wait_for == list(FED) and topics.SONAR_RAW.name in replayed:
-            return [DRIVER, *FED]
+        if set(FED) <= set(self.wait_for) and topics.SONAR_RAW.name in replayed:
+            return list(dict.fromkeys([DRIVER, *self.wait_for]))
         return self.wait_for
 
 
