@@ -7,7 +7,8 @@ import pytest
 from moving_scans import BASIN, moving_scans
 from numerical_derivatives import jacobian
 
-from msss_graphslam.core.smoothing.bent_scan import BentScan, bend, reckoned_ends, vectors
+from msss_graphslam.core.matching.plane_vectors import vectors
+from msss_graphslam.core.smoothing.bent_scan import BentScan, bend, reckoned_ends
 from msss_graphslam.core.types import Array
 
 END = np.array([1.3, 0.2, 0.4])

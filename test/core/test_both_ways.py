@@ -9,9 +9,8 @@ from synthetic_scans import basin, scan
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import compose
 from msss_graphslam.core.matching.alignment import Alignment
-from msss_graphslam.core.matching.both_ways import StackedLines, StackedPoints
-from msss_graphslam.core.matching.line_features import LineFeatures, line_features, vectors
-from msss_graphslam.core.matching.paired_lines import PairedLines
+from msss_graphslam.core.matching.line_features import LineFeatures, line_features
+from msss_graphslam.core.matching.paired_lines import PairedLines, Pose, Way
 from msss_graphslam.core.types import Array
 
 STANDPOINT = np.array([4.0, 4.0, 0.3])
@@ -40,51 +39,74 @@ def aligned(
     return Alignment(*scans, start, GUESS, config, start)
 
 
-def test_the_nearest_point_of_the_right_scan(scans: tuple[LineFeatures, LineFeatures]) -> None:
-    lines = StackedLines.of(*scans)
-    places = vectors(np.vstack([scans[0].points[[7]], scans[1].points[[3, 9]]]))
-    found = lines.nearest(places, 1, (0.01, 0.01))
-    assert found.tolist() == [7, lines.second + 3, lines.second + 9]
-    np.testing.assert_allclose(lines.centres[found[1:]], vectors(scans[1].centres[[3, 9]]))
+def ways(first: LineFeatures, second: LineFeatures) -> tuple[Way, Way]:
+    return Way(second, first, backwards=False), Way(first, second, backwards=True)
+
+
+def test_a_scan_lies_on_its_own_lines(scans: tuple[LineFeatures, LineFeatures]) -> None:
+    """Of each point the nearest is itself, and the line about it passes within a deviation."""
+    first = scans[0]
+    for way in ways(first, first):
+        pairs = way.paired((0.0, 0.0, 0.0), 0.01)
+        assert len(pairs) == np.count_nonzero(first.flat)
+        assert pairs.overlap == 1.0
+        np.testing.assert_allclose(
+            np.abs(pairs.rows[3]),
+            np.abs(np.sum(first.normals * (first.points - first.centres), axis=1))[first.flat]
+            / np.sqrt(first.variances + measured(first))[first.flat],
+        )
+
+
+def measured(scan: LineFeatures) -> Array:
+    """Return the variances (n,) of the points along their own normals."""
+    return np.asarray(np.einsum("ni,nij,nj->n", scan.normals, scan.covariances, scan.normals))
 
 
 @pytest.mark.parametrize(("distance", "near"), [(0.49, True), (0.51, False)])
-def test_the_gate_from_both_sides(
-    scans: tuple[LineFeatures, LineFeatures], distance: float, near: bool
-) -> None:
-    """Beyond the gate, or at a point without a line, there is no normal that is like any other."""
-    lines = StackedLines.of(*scans)
-    for number, lonely in enumerate(scans):
-        farthest = lonely.points[np.argmax(lonely.points[:, 0])]
-        places = vectors(farthest[None] + [distance, 0.0])
-        found = lines.nearest(places, 1 - number, (0.5, 0.5))
-        ends = [lines.second - 1, len(lines.centres) - 1]
-        assert (int(found[0]) != ends[number]) is near
-        if not near:
-            assert lines.across[found[0]] == 0.0
+def test_the_gate_from_both_sides(distance: float, near: bool) -> None:
+    """Of a wall ahead and the same wall farther off; a step moves either way's points."""
+    along = 0.1 * (np.arange(41) - 20)
+    wall = np.column_stack([np.full(41, 4.0), along])
+    scan_of = line_features(wall, np.tile(1e-4 * np.eye(2), (41, 1, 1)))
+    assert scan_of is not None
+    for way in ways(scan_of, scan_of):
+        assert (len(way.paired((distance, 0.0, 0.0), 0.5)) == 41) is near
+        assert len(way.paired((distance, 0.0, 0.0), 0.5)) in (0, 41)
+
+
+@pytest.mark.parametrize("turned", [np.pi, 0.8, 0.7])
+def test_a_pair_has_its_normals_on_the_same_side(turned: float) -> None:
+    """The cosine of 0.8 rad is just below the bound, that of 0.7 rad above it."""
+    along = 0.1 * (np.arange(41) - 20)
+    wall = np.column_stack([np.full(41, 4.0), along])
+    scan_of = line_features(wall, np.tile(1e-4 * np.eye(2), (41, 1, 1)))
+    assert scan_of is not None
+    normals = np.tile([-np.cos(turned), -np.sin(turned)], (41, 1))
+    pairs = Way(replace(scan_of, normals=normals), scan_of, backwards=False)
+    assert (len(pairs.paired((0.0, 0.0, 0.0), 0.5)) > 0) is (turned == 0.7)
 
 
 def test_a_point_without_a_line_has_no_normal(scans: tuple[LineFeatures, LineFeatures]) -> None:
     none = replace(scans[0], flat=np.zeros_like(scans[0].flat))
-    lines, points = StackedLines.of(none, scans[1]), StackedPoints.of(scans[1], none)
-    assert not lines.across[: lines.second].any()
-    assert lines.across[lines.second : -1].any()
-    assert points.counts.tolist() == [np.count_nonzero(scans[1].flat), 0]
+    forward, backward = ways(none, scans[1])
+    assert not forward.lines.across.any()
+    assert backward.lines.across.any()
+    assert len(forward.points.places) == np.count_nonzero(scans[1].flat)
+    assert len(backward.points.places) == 0
+    assert len(forward.paired((0.0, 0.0, 0.0), 10.0)) == 0
+    assert len(backward.paired((0.0, 0.0, 0.0), 10.0)) == 0
 
 
 def test_variances_along_normals(scans: tuple[LineFeatures, LineFeatures]) -> None:
+    """What a residual is normalised by is what the point has along the line's normal."""
     first = scans[0]
     rng = np.random.default_rng(1)
-    root = rng.normal(size=(len(first.points), 2, 2))
+    root = 0.1 * rng.normal(size=(len(first.points), 2, 2))
     skewed = replace(first, covariances=root @ np.swapaxes(root, 1, 2))
-    points = StackedPoints.of(skewed, scans[1])
-    chosen = np.arange(0, points.second, 3)
-    angles = rng.uniform(-np.pi, np.pi, len(chosen))
-    normals = np.column_stack([np.cos(angles), np.sin(angles)])
-    found = points.variances(chosen, np.conj(vectors(normals)))
-    covariances = skewed.covariances[skewed.flat][chosen]
-    wanted = np.einsum("ni,nij,nj->n", normals, covariances, normals)
-    np.testing.assert_allclose(found, wanted)
+    pairs = Way(skewed, first, backwards=False).paired((0.0, 0.0, 0.0), 0.01)
+    off = np.sum(first.normals * (first.points - first.centres), axis=1)
+    wanted = off / np.sqrt(measured(skewed) + first.variances)
+    np.testing.assert_allclose(pairs.rows[3], wanted[first.flat], atol=1e-9)
 
 
 def test_without_pairs_the_start_is_kept(
@@ -102,21 +124,6 @@ def test_without_pairs_the_start_is_kept(
         np.testing.assert_allclose(alone.pose, start, atol=1e-12)
         assert alone.pairs() is None
     assert together.pairs() is not None
-
-
-def test_neither_way_knows_of_the_other_at_first(
-    scans: tuple[LineFeatures, LineFeatures],
-) -> None:
-    """Lines of no use to one way do not change where the other one ends."""
-    start = np.add(DISPLACEMENT, [0.1, 0.1, 0.03])
-    lines, points = StackedLines.of(*scans), StackedPoints.of(scans[1], scans[0])
-    x, y, yaw = start.tolist()
-    here, lost = (x, y, yaw), (x + 40.0, y, yaw)
-    both, forward = (
-        PairedLines(lines, points, (here, other), (0.5, 0.5)) for other in (here, lost)
-    )
-    assert forward.counts == (both.counts[0], 0)
-    np.testing.assert_array_equal(forward.rows, both.rows[:, : both.middle])
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -167,20 +174,27 @@ def test_the_fewest_iterations_say_something(
 def test_derivatives_by_the_displacement(
     scans: tuple[LineFeatures, LineFeatures], way: int
 ) -> None:
-    """Of both ways' residuals, each by its own displacement."""
-    lines, points = StackedLines.of(*scans), StackedPoints.of(scans[1], scans[0])
+    """Of both ways' residuals."""
     pose = [0.62, -0.31, 0.16]
 
     def paired(moved: list[float]) -> PairedLines:
-        there = (moved[0], moved[1], moved[2])
-        return PairedLines(lines, points, (there, there), (0.3, 0.3))
+        there: Pose = (moved[0], moved[1], moved[2])
+        return ways(*scans)[way].paired(there, 0.3)
 
     middle = paired(pose)
-    chosen = slice(0, middle.middle) if way == 0 else slice(middle.middle, None)
     for number in range(3):
         step = np.eye(3)[number] * 1e-7
         before, after = (paired((pose + sign * step).tolist()) for sign in (-1.0, 1.0))
-        assert before.counts == after.counts == middle.counts
+        assert len(before) == len(after) == len(middle)
         slope = (after.rows[3] - before.rows[3]) / 2e-7
         # Deviations turn along with the points, a little.
-        np.testing.assert_allclose(slope[chosen], middle.rows[number, chosen], rtol=0.05, atol=2.0)
+        np.testing.assert_allclose(slope, middle.rows[number], rtol=0.05, atol=2.0)
+
+
+@pytest.mark.parametrize("way", [0, 1])
+def test_the_twin_is_the_derivative_where_the_normals_are_the_same(
+    scans: tuple[LineFeatures, LineFeatures], way: int
+) -> None:
+    """Of a scan on itself a point's own normal is its line's."""
+    pairs = ways(scans[0], scans[0])[way].paired((0.0, 0.0, 0.0), 0.01).matched(np.eye(3))
+    np.testing.assert_allclose(pairs.twin, pairs.jacobian, atol=1e-9)

@@ -8,16 +8,12 @@ import numpy as np
 
 from msss_graphslam.config.groups import Matching
 from msss_graphslam.core.compounding import wrap_angle
-from msss_graphslam.core.matching.both_ways import StackedLines, StackedPoints
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.matching.match_covariance import LEAST_SCALE, MatchedPairs
-from msss_graphslam.core.matching.paired_lines import SAME_SIDE, PairedLines, Pose
+from msss_graphslam.core.matching.match_covariance import MatchedPairs
+from msss_graphslam.core.matching.paired_lines import Pose, Way
 from msss_graphslam.core.types import Array
 
-__all__ = ["CAUCHY", "SAME_SIDE", "Alignment"]
-
-CAUCHY = 2.0
-"""Residual, in robust standard deviations, at which a pair's weight is halved."""
+__all__ = ["Alignment"]
 
 APART, APART_ANGLE = 0.02, 4e-3
 """Each way alone has come near enough for both to go on together [m], [rad]."""
@@ -37,11 +33,11 @@ class Alignment:
 
     Row 0 of what has two is the way forwards, the ``current`` scan's points on the lines of
     ``reference``; row 1 the way backwards. Either finds the displacement of the current scan. At
-    first neither way knows of the other, they only share the calls: ``apart`` (2, 3) is what they
-    come to, and where they disagree the match is a wrong one. From the mean of both they go on
-    together, to the ``pose`` (3,) at which all pairs fit best: the mean weighs both ways alike,
-    however little one of them sees. ``overlaps`` and ``scales`` (2,) are the share of points with
-    a pair and the robust size of the normalised residuals.
+    first neither way knows of the other: ``apart`` (2, 3) is what they come to, and where they
+    disagree the match is a wrong one. From the mean of both they go on together, to the ``pose``
+    (3,) at which all pairs fit best: the mean weighs both ways alike, however little one of them
+    sees. ``overlaps`` and ``scales`` (2,) are the share of points with a pair and the robust size
+    of the normalised residuals.
     """
 
     def __init__(
@@ -53,8 +49,10 @@ class Alignment:
         config: Matching,
         start: Array,
     ) -> None:
-        self._lines = StackedLines.of(reference, current)
-        self._points = StackedPoints.of(current, reference)
+        self._ways = (
+            Way(current, reference, backwards=False),
+            Way(reference, current, backwards=True),
+        )
         self._initial, self._prior = initial.tolist(), np.asarray(np.linalg.inv(covariance))
         self._information = self._prior.tolist()
         x, y, yaw = start.tolist()
@@ -62,11 +60,16 @@ class Alignment:
         left = self._align_apart(_reaches(initial, covariance), config)
         self.apart = np.array(self._poses)
         self._poses = (_middle(*self._poses),) * 2
-        if min(self._pairs.counts) >= FEWEST:
+        if self._is_enough:
             self._align_together(config.pairing_distance, max(left, 1))
         self.pose = np.array(self._poses[0])
-        self.scales = np.array(self._scales)
-        self.overlaps = np.array(self._pairs.counts) / np.maximum(self._points.counts, 1)
+        self.scales = np.array([pairs.scale for pairs in self._pairs])
+        self.overlaps = np.array([pairs.overlap for pairs in self._pairs])
+
+    @property
+    def _is_enough(self) -> bool:
+        """Whether there are pairs enough either way."""
+        return min(map(len, self._pairs)) >= FEWEST
 
     def _align_apart(self, reaches: tuple[float, float], config: Matching) -> int:
         """Align each way for itself; return how many iterations are left."""
@@ -78,8 +81,8 @@ class Alignment:
             gates = max(reaches[0], narrow), max(reaches[1], narrow)
             equations = self._equations(gates)
             steps = tuple(
-                _step(*sums) if count >= FEWEST else (0.0, 0.0, 0.0)
-                for sums, count in zip(equations, self._pairs.counts, strict=True)
+                _step(*sums) if len(pairs) >= FEWEST else (0.0, 0.0, 0.0)
+                for sums, pairs in zip(equations, self._pairs, strict=True)
             )
             self._poses = _moved(self._poses[0], steps[0]), _moved(self._poses[1], steps[1])
             settled = not wide and _within(steps, APART, APART_ANGLE)
@@ -97,18 +100,14 @@ class Alignment:
 
     def _equations(self, gates: tuple[float, float]) -> tuple[Equations, Equations]:
         """Pair anew and sum up robustly, with the initial guess as a weak prior."""
-        self._pairs = pairs = PairedLines(self._lines, self._points, self._poses, gates)
-        rows, ways = pairs.rows, (slice(0, pairs.middle), slice(pairs.middle, None))
-        size = np.abs(rows[3])
-        self._scales = [_robust_size(size[way]) for way in ways]
-        widths = [CAUCHY * max(scale, LEAST_SCALE) for scale in self._scales]
-        self._weights = 1.0 / (1.0 + (rows[3] / np.repeat(widths, pairs.counts)) ** 2)
-        weighted = rows[:3] * self._weights
-        first, second = (
-            self._with_prior((weighted[:, way] @ rows[:, way].T).tolist(), pose)
-            for way, pose in zip(ways, self._poses, strict=True)
+        self._pairs = forward, backward = (
+            self._ways[0].paired(self._poses[0], gates[0]),
+            self._ways[1].paired(self._poses[1], gates[1]),
         )
-        return first, second
+        return (
+            self._with_prior(forward.sums.tolist(), self._poses[0]),
+            self._with_prior(backward.sums.tolist(), self._poses[1]),
+        )
 
     def _with_prior(self, sums: list[list[float]], pose: Pose) -> Equations:
         """Add the weak prior to the sums (3, 4) of one way at its pose."""
@@ -122,22 +121,10 @@ class Alignment:
 
     def pairs(self) -> tuple[MatchedPairs, MatchedPairs] | None:
         """Return the last step's pairs, None where there were too few either way."""
-        if min(self._pairs.counts) < FEWEST:
+        if not self._is_enough:
             return None
-        rows, twin, slips = self._pairs.rows, self._pairs.twin(), self._pairs.slips()
-        middle = self._pairs.middle
-        forward, backward = (
-            MatchedPairs(
-                rows[:3, way].T,
-                twin[:, way].T,
-                rows[3, way],
-                self._weights[way],
-                slips[way],
-                self._prior,
-            )
-            for way in (slice(0, middle), slice(middle, None))
-        )
-        return forward, backward
+        forward, backward = self._pairs
+        return forward.matched(self._prior), backward.matched(self._prior)
 
 
 def _reaches(initial: Array, covariance: Array) -> tuple[float, float]:
@@ -173,12 +160,6 @@ def _moved(pose: Pose, step: Pose) -> Pose:
 def _middle(first: Pose, second: Pose) -> Pose:
     x, y, yaw = (b - a for a, b in zip(first, second, strict=True))
     return _moved(first, (0.5 * x, 0.5 * y, 0.5 * wrap_angle(yaw)))
-
-
-def _robust_size(sizes: Array) -> float:
-    """Return the standard deviation that sizes of residuals speak of, 1 without any."""
-    middle = len(sizes) // 2
-    return 1.4826 * float(np.partition(sizes, middle)[middle]) if len(sizes) else 1.0
 
 
 def _within(steps: tuple[Pose, ...], most: float, most_angle: float) -> bool:

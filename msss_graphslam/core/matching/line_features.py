@@ -4,20 +4,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from msss_graphslam.core.matching.plane_vectors import Numbers, Vectors, vectors
 from msss_graphslam.core.types import Array
 
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
-
-__all__ = ["LineFeatures", "Vectors", "line_features", "vectors"]
-
-Vectors = NDArray[np.complex128]
-"""Plane vectors (n,) as x + i y: the real part of conj(a) b is the dot product."""
+__all__ = ["NEIGHBOURS", "FlatPoints", "LineFeatures", "Lines", "line_features"]
 
 NEIGHBOURS = 7
 """Points of a local line, itself included: enough to average, few enough to follow a bend."""
@@ -26,19 +20,14 @@ FLATNESS = 0.15
 """Largest ratio of a local line's thickness to its length (standard deviations)."""
 
 
-def vectors(rows: Array) -> Vectors:
-    """Return the first two columns of ``rows`` (n, 2 or more)."""
-    return np.asarray(rows[:, 0] + 1j * rows[:, 1])
+class Lines(NamedTuple):
+    """The n lines of a scan, by ascending x of the points, ``places``, that they belong to.
 
-
-@dataclass(frozen=True, slots=True)
-class Lines:
-    """The n lines of a scan, and behind them a place that stands for no line.
-
-    ``across`` (n + 1,) are the conjugated normals, without length where there is no line;
-    ``supported`` (n + 1,) [m] is how far along a line a point may lie.
+    ``across`` (n,) are the conjugated normals, without length where there is no line;
+    ``supported`` (n,) [m] is how far along a line a point may lie.
     """
 
+    places: Vectors
     centres: Vectors
     across: Vectors
     supported: Array
@@ -46,8 +35,7 @@ class Lines:
     slips: Array
 
 
-@dataclass(frozen=True, slots=True)
-class FlatPoints:
+class FlatPoints(NamedTuple):
     """The k points of a scan that lie on a line.
 
     A covariance is ``mean`` [m^2], half its trace, and a ``deviator`` that turns with twice the
@@ -68,8 +56,8 @@ class LineFeatures:
     ``points`` (n, 2) and their ``covariances`` (n, 2, 2); the lines' ``centres`` (n, 2), their
     ``normals`` (n, 2) towards the sensor, ``variances`` (n,) [m^2] of a point along the normal,
     ``reach`` (n,) [m] how far a line is supported, ``flat`` (n,) whether there is a line at all;
-    ``tree`` finds the nearest point. ``slips`` (n, 2, 3) [m] is how the points move together for
-    a unit of the error of the scan's motion, see ``point_slips``.
+    ``slips`` (n, 2, 3) [m] is how the points move together for a unit of the error of the scan's
+    motion, see ``point_slips``. ``order`` (n,) puts the points by ascending x.
     """
 
     points: Array
@@ -79,19 +67,21 @@ class LineFeatures:
     variances: Array
     reach: Array
     flat: np.ndarray
-    tree: "cKDTree"
     slips: Array
+    order: Numbers
 
     @cached_property
     def as_lines(self) -> Lines:
         """The lines, for a match."""
+        order, normals = self.order, vectors(self.normals)
         return Lines(
-            centres=np.append(vectors(self.centres), 0.0),
+            places=vectors(self.points)[order],
+            centres=vectors(self.centres)[order],
             # A normal of no length is like none other.
-            across=np.append(np.where(self.flat, np.conj(vectors(self.normals)), 0.0), 0.0),
-            supported=np.append(2.0 * self.reach, 0.0),
-            variances=np.append(self.variances, 0.0),
-            slips=np.concatenate([self.slips, np.zeros((1, 2, 3))]),
+            across=np.where(self.flat, np.conj(normals), 0.0)[order],
+            supported=2.0 * self.reach[order],
+            variances=self.variances[order],
+            slips=self.slips[order],
         )
 
     @cached_property
@@ -119,16 +109,14 @@ def line_features(
     """
     if len(points) < NEIGHBOURS:
         return None
-    # It holds 35 MiB, and a back end matches nothing until the end.
-    from scipy.spatial import cKDTree
+    # A back end matches nothing until the end.
+    from msss_graphslam.core.matching.local_lines import local_lines
 
-    tree = cKDTree(points)
-    found = tree.query(points, k=NEIGHBOURS)
-    distances, neighbours = np.asarray(found[0]), np.asarray(found[1])
-    local = points[neighbours]
-    centres = local.mean(axis=1)
-    normals, thickness, length = _axes(local - centres[:, None])
-    normals = np.where(np.sum(normals * centres, axis=1)[:, None] > 0.0, -normals, normals)
+    order = np.argsort(points[:, 0], kind="stable")
+    table = np.empty((8, len(points)))
+    table[:, order] = local_lines(vectors(points)[order], NEIGHBOURS)
+    centres, normals = table[:2].T, table[2:4].T
+    thickness, length, spacing, reach = table[4:]
     measured = np.einsum("ni,nij,nj->n", normals, covariances, normals)
     return LineFeatures(
         points=points,
@@ -136,28 +124,13 @@ def line_features(
         centres=centres,
         normals=normals,
         variances=np.maximum(measured, thickness**2),
-        reach=distances[:, -1],
-        flat=(thickness < FLATNESS * length) & _supported(distances),
-        tree=tree,
+        reach=reach,
+        flat=(thickness < FLATNESS * length) & _supported(spacing, reach),
         slips=np.zeros((len(points), 2, 3)) if slips is None else slips,
+        order=order,
     )
 
 
-def _axes(spread: Array) -> tuple[Array, Array, Array]:
-    """Return the normals (n, 2) of the lines through points (n, k, 2) around the origin.
-
-    With the standard deviations (n,) along the normals and along the lines.
-    """
-    x, y = spread[..., 0], spread[..., 1]
-    sums = np.stack([x * x, y * y, x * y]).mean(axis=-1)
-    middle, half, mixed = 0.5 * (sums[0] + sums[1]), 0.5 * (sums[0] - sums[1]), sums[2]
-    angle = 0.5 * np.arctan2(mixed, half)
-    radius = np.hypot(half, mixed)
-    thickness, length = np.sqrt(np.maximum([middle - radius, middle + radius], 0.0))
-    return np.column_stack([-np.sin(angle), np.cos(angle)]), thickness, length
-
-
-def _supported(distances: Array) -> np.ndarray:
+def _supported(spacing: Array, reach: Array) -> np.ndarray:
     """Whether the neighbours are no farther than the spacing of the scan's points lets expect."""
-    spacing = np.median(distances[:, 1])
-    return np.asarray(distances[:, -1] < 8.0 * NEIGHBOURS * spacing)
+    return np.asarray(reach < 8.0 * NEIGHBOURS * np.median(spacing))

@@ -1,16 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The msss_graphslam authors
 # SPDX-License-Identifier: Apache-2.0
-"""Points of two scans on each other's lines, linearised by the displacement between them."""
+"""Points of one scan on the lines of another, linearised by the displacement and weighed."""
 
 import cmath
 
 import numpy as np
 
-from msss_graphslam.core.matching.both_ways import StackedLines, StackedPoints, along
-from msss_graphslam.core.matching.line_features import Vectors
+from msss_graphslam.core.matching.line_features import FlatPoints, LineFeatures, Lines
+from msss_graphslam.core.matching.match_covariance import LEAST_SCALE, MatchedPairs
+from msss_graphslam.core.matching.plane_vectors import along
 from msss_graphslam.core.types import Array
 
-__all__ = ["SAME_SIDE", "PairedLines", "Pose"]
+__all__ = ["CAUCHY", "SAME_SIDE", "PairedLines", "Pose", "Way"]
+
+CAUCHY = 2.0
+"""Residual, in robust standard deviations, at which a pair's weight is halved."""
 
 SAME_SIDE = 0.7
 """Smallest cosine between the normals of a pair: a wall has two sides and a corner two walls."""
@@ -19,77 +23,89 @@ Pose = tuple[float, float, float]
 """Displacement [m, m, rad] of the current scan in the reference scan."""
 
 
-class PairedLines:
-    """The pairs of both ways, each at its own displacement of the current scan.
+class Way:
+    """One way of aligning two scans.
 
-    Forwards the points are the current scan's, backwards the reference scan's, whose points are
-    seen from the current one. ``counts`` are the pairs of each way, ``middle`` is where the
-    second way's begin. ``rows`` (4, k) are the derivatives of the normalised residuals by the
-    displacement, and the residuals.
+    Forwards the points are the current scan's and the lines the reference scan's, ``backwards``
+    the other way round; the displacement is the current scan's both ways.
     """
 
-    def __init__(
-        self,
-        lines: StackedLines,
-        points: StackedPoints,
-        poses: tuple[Pose, Pose],
-        gates: tuple[float, float],
-    ) -> None:
-        self._points, self._lines = points, lines
-        self._turns, shifts = _frames(poses)
-        turns = self._turns[points.way]
-        seen = turns * points.places + shifts[points.way]
-        on = lines.nearest(seen, points.second, gates)
-        across = lines.across[on]
-        offsets = across * (seen - lines.centres[on])
-        alike = (across * turns * points.normals).real > SAME_SIDE
-        self._paired = paired = np.flatnonzero(alike & (abs(offsets.imag) < lines.supported[on]))
-        self._on, self._way, self._seen = on[paired], points.way[paired], seen[paired]
-        self._across, self._turned = across[paired], turns[paired]
-        self.middle = int(paired.searchsorted(points.second))
-        self.counts = self.middle, len(paired) - self.middle
-        variances = points.variances(paired, self._across * self._turned)
-        self._inverse_deviations = 1.0 / np.sqrt(variances + lines.variances[self._on])
-        self._levers = self._lever(poses[0])
-        self.rows = np.empty((4, len(paired)))
-        self.rows[:3] = self._by_displacement(self._across)
-        self.rows[3] = offsets.real[paired]
-        self.rows *= self._inverse_deviations
+    def __init__(self, points: LineFeatures, lines: LineFeatures, *, backwards: bool) -> None:
+        self.points: FlatPoints = points.as_points
+        self.lines: Lines = lines.as_lines
+        self.backwards = backwards
 
-    def _lever(self, forward: Pose) -> Vectors:
-        """Return what the pairs turn about, with the sign of the way."""
-        levers = self._seen.copy()
-        levers[: self.middle] -= complex(forward[0], forward[1])
-        levers[self.middle :] *= -1.0
-        return levers
+    def paired(self, pose: Pose, gate: float) -> "PairedLines":
+        """Pair the points with the lines at a displacement, at most ``gate`` [m] apart."""
+        return PairedLines(self, pose, gate)
 
-    def _by_displacement(self, across: Vectors) -> Array:
-        """Return the derivatives (3, k) of distances along normals, given conjugated.
-
-        Backwards a step of the displacement moves the points the other way, in a turned frame.
-        """
-        moved = across.copy()
-        moved[self.middle :] *= -self._turns[1]
-        return np.array([moved.real, -moved.imag, -(across * self._levers).imag])
-
-    def twin(self) -> Array:
-        """Return the first three ``rows`` with the points' own normals instead (3, k)."""
-        own = np.conj(self._turned * self._points.normals[self._paired])
-        return self._by_displacement(own) * self._inverse_deviations
-
-    def slips(self) -> Array:
-        """Return what the residuals change by units of both scans' twist errors (k, 6).
-
-        Those of the points' scan come first.
-        """
-        moved = along(self._across * self._turned, self._points.slips[self._paired])
-        carried = -along(self._across, self._lines.slips[self._on])
-        return np.hstack([moved, carried]) * self._inverse_deviations[:, None]
+    def frame(self, pose: Pose) -> tuple[complex, complex]:
+        """Return the turn and the shift that take points into the lines' frame."""
+        turn, shift = cmath.exp(1j * pose[2]), complex(pose[0], pose[1])
+        if self.backwards:
+            return turn.conjugate(), -turn.conjugate() * shift
+        return turn, shift
 
 
-def _frames(poses: tuple[Pose, Pose]) -> tuple[Vectors, Vectors]:
-    """Return the turn and the shift of points into the other scan's frame, for both ways."""
-    forward, backward = (cmath.exp(1j * pose[2]) for pose in poses)
-    back = backward.conjugate()
-    shifts = complex(poses[0][0], poses[0][1]), -back * complex(poses[1][0], poses[1][1])
-    return np.array([forward, back]), np.array(shifts)
+class PairedLines:
+    """The pairs of one way at a displacement.
+
+    ``rows`` (4, k) are the derivatives of the normalised residuals by the displacement, and the
+    residuals; ``scale`` is their robust size, ``weights`` (k,) are Cauchy's.
+    """
+
+    def __init__(self, way: Way, pose: Pose, gate: float) -> None:
+        # A back end matches nothing until the end.
+        from msss_graphslam.core.matching.paired_points import paired_points
+
+        self._way, self._pose = way, pose
+        rows, self._chosen, self._on = paired_points(
+            way.points, way.lines, pose, gate, way.backwards
+        )
+        self.rows, self._inverse_deviations = rows[:4], rows[4]
+        self.scale = _robust_size(np.abs(rows[3]))
+        width = CAUCHY * max(self.scale, LEAST_SCALE)
+        self.weights = 1.0 / (1.0 + (rows[3] / width) ** 2)
+
+    def __len__(self) -> int:
+        return len(self._chosen)
+
+    @property
+    def overlap(self) -> float:
+        """The share of the points that have a pair."""
+        return len(self) / max(len(self._way.points.places), 1)
+
+    @property
+    def sums(self) -> Array:
+        """The normal equations (3, 4): the matrix, and the gradient behind it."""
+        return np.asarray((self.rows[:3] * self.weights) @ self.rows.T)
+
+    def matched(self, prior: Array) -> MatchedPairs:
+        """Return the pairs with what the covariance asks of them; ``prior`` as there."""
+        points, lines, chosen, on = self._way.points, self._way.lines, self._chosen, self._on
+        turn, shift = self._way.frame(self._pose)
+        across, turned = lines.across[on], turn * points.places[chosen]
+        own = np.conj(turn * points.normals[chosen])
+        moved, lever = (-turn * own, -turned - shift) if self._way.backwards else (own, turned)
+        twin = np.array([moved.real, -moved.imag, -(own * lever).imag])
+        slips = np.hstack(
+            [
+                along(turn * across, points.slips[chosen]),
+                -along(across, lines.slips[on]),
+            ]
+        )
+        inverse = self._inverse_deviations
+        return MatchedPairs(
+            jacobian=self.rows[:3].T,
+            twin=(twin * inverse).T,
+            residuals=self.rows[3],
+            weights=self.weights,
+            slips=slips * inverse[:, None],
+            prior=prior,
+        )
+
+
+def _robust_size(sizes: Array) -> float:
+    """Return the standard deviation that sizes of residuals speak of, 1 without any."""
+    middle = len(sizes) // 2
+    return 1.4826 * float(np.partition(sizes, middle)[middle]) if len(sizes) else 1.0

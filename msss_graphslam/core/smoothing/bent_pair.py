@@ -7,19 +7,17 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from msss_graphslam.core.matching.alignment import CAUCHY, SAME_SIDE
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.smoothing.bent_scan import BentScan, Hanging, Vectors, vectors
+from msss_graphslam.core.matching.paired_lines import CAUCHY, SAME_SIDE
+from msss_graphslam.core.matching.plane_vectors import Numbers, Vectors, vectors
+from msss_graphslam.core.smoothing.bent_scan import BentScan, Hanging
 from msss_graphslam.core.types import Array
 
 __all__ = ["Pairing", "pairings"]
 
 FEWEST = 3
 """Pairs of points and lines that say something of a displacement."""
-
-Numbers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +90,18 @@ def _points(scans: Sequence[BentScan], displacements: Array) -> _Points:
 
 def _paired(points: _Points, lines: LineFeatures, reach: float) -> tuple[Numbers, Numbers]:
     """Return which points lie on which lines."""
-    seen = points.turns * points.places + points.shifts
-    found = lines.tree.query(np.column_stack([seen.real, seen.imag]), distance_upper_bound=reach)
-    near = np.flatnonzero(np.isfinite(found[0]))
-    nearest = np.asarray(found[1], dtype=np.intp)[near]
-    normals = vectors(lines.normals[nearest])
-    offsets = np.conj(normals) * (seen[near] - vectors(lines.centres[nearest]))
-    alike = np.real(np.conj(normals) * points.turns[near] * points.normals[near]) > SAME_SIDE
-    on = lines.flat[nearest] & alike & (np.abs(offsets.imag) < 2.0 * lines.reach[nearest])
-    return near[on], nearest[on]
+    # A back end pairs nothing until the end.
+    from msss_graphslam.core.matching.nearest_points import nearest_of_each
+
+    seen, there = points.turns * points.places + points.shifts, lines.as_lines
+    found = nearest_of_each(there.places, seen, reach)
+    near = np.flatnonzero(found >= 0)
+    nearest = found[near]
+    across = there.across[nearest]
+    offsets = across * (seen[near] - there.centres[nearest])
+    alike = np.real(across * points.turns[near] * points.normals[near]) > SAME_SIDE
+    on = alike & (np.abs(offsets.imag) < there.supported[nearest])
+    return near[on], lines.order[nearest[on]]
 
 
 def _linearised(

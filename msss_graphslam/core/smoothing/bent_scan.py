@@ -6,22 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from msss_graphslam.core.compounding import between, rotation, transform_points
 from msss_graphslam.core.matching.line_features import LineFeatures, line_features
+from msss_graphslam.core.matching.plane_vectors import Numbers, Vectors, vectors
 from msss_graphslam.core.scans.trajectory_correction import closed_form, correct_motion
 from msss_graphslam.core.types import Array, Scan
 
-__all__ = ["BentScan", "Hanging", "Vectors", "bend", "reckoned_ends", "vectors"]
-
-Vectors = NDArray[np.complex128]
-"""Plane vectors (n,) as x + i y: the real part of conj(a) b is the dot product."""
-
-
-def vectors(rows: Array) -> Vectors:
-    """Return the first two columns of ``rows`` (n, 2 or more)."""
-    return np.asarray(rows[:, 0] + 1j * rows[:, 1])
+__all__ = ["BentScan", "Hanging", "bend", "reckoned_ends"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +37,7 @@ class Hanging:
             np.concatenate([one.elapsed for one in several]),
         )
 
-    def at(self, chosen: NDArray[np.intp]) -> "Hanging":
+    def at(self, chosen: Numbers) -> "Hanging":
         """Return the same of the places chosen."""
         return Hanging(self.drift[chosen], self.swing[chosen], self.elapsed[chosen])
 
