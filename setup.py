@@ -56,6 +56,7 @@ setup(
         "jinja2",
         "matplotlib",
         "mcap",
+        "numba",
         "numpy",
         "pyserial",
         "pyyaml",

@@ -60,8 +60,8 @@ def _stays(
     ends = np.cumsum(counts)
     first, second = ends - counts + (counts - 1) // 2, ends - counts + counts // 2
     medians = 0.5 * (ascending[first] + ascending[second])
-    pairs = np.unique(np.stack([numbers, beams]), axis=1)  # a beam may see a surface twice
-    seen = np.bincount(pairs[0]) >= fewest
+    looks = np.unique(numbers * (beams.max() + 1) + beams)  # a beam may see a surface twice
+    seen = np.bincount(looks // (beams.max() + 1)) >= fewest
     return np.asarray((seen & (medians < contrast))[numbers])
 
 

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The covariance of dead reckoning's states, in the blocks into which it falls."""
 
-from array import array
 from collections.abc import Sequence
 from copy import copy
 from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from msss_graphslam.core.reckoning.attitude import Matrix
 from msss_graphslam.core.reckoning.error_pairs import (
@@ -35,7 +35,6 @@ PLACES = {
 }
 """The pair of each state, and whether it is its b."""
 
-_ZEROS = bytes(8 * SIZE * SIZE)
 _NONE: Four = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -133,18 +132,26 @@ class PairedCovariance:
     @property
     def matrix(self) -> Array:
         """The whole (10, 10)."""
-        flat = array("d", _ZEROS)
-        of_x = of_y = shared = 0.0
-        for (a, b), pair in zip(MEMBERS, self._pairs, strict=True):
-            xx, xy, yy, xa, ya, xb, yb, aa, ab, bb = pair
-            of_x, shared, of_y = of_x + xx, shared + xy, of_y + yy
-            row_a, row_b = SIZE * a, SIZE * b
-            flat[a] = flat[row_a] = xa
-            flat[b] = flat[row_b] = xb
-            flat[SIZE + a] = flat[row_a + Y] = ya
-            flat[SIZE + b] = flat[row_b + Y] = yb
-            flat[row_a + a] = aa
-            flat[row_a + b] = flat[row_b + a] = ab
-            flat[row_b + b] = bb
-        flat[X], flat[Y], flat[SIZE], flat[SIZE + Y] = of_x, shared, shared, of_y
-        return np.frombuffer(flat).reshape(SIZE, SIZE)
+        tilt, heading, drift, vertical = self._pairs
+        of_x = tilt[0] + heading[0] + drift[0] + vertical[0]
+        shared = tilt[1] + heading[1] + drift[1] + vertical[1]
+        of_y = tilt[2] + heading[2] + drift[2] + vertical[2]
+        numbers = np.array([*tilt, *heading, *drift, *vertical, of_x, shared, of_y, 0.0])
+        return np.asarray(numbers[_LAID_OUT])
+
+
+def _laid_out() -> NDArray[np.intp]:
+    """Return by entry (10, 10) which of four pairs' numbers it is, behind them x and y, and 0."""
+    size = len(CERTAIN)
+    of_x, shared, of_y, nothing = range(len(MEMBERS) * size, len(MEMBERS) * size + 4)
+    places = np.full((SIZE, SIZE), nothing)
+    places[X, X], places[X, Y], places[Y, Y] = of_x, shared, of_y
+    for number, (a, b) in enumerate(MEMBERS):
+        entries = ((X, a), (Y, a), (X, b), (Y, b), (a, a), (a, b), (b, b))
+        for place, (row, column) in enumerate(entries, start=number * size + 3):
+            places[row, column] = places[column, row] = place
+    places[Y, X] = shared
+    return places
+
+
+_LAID_OUT = _laid_out()
