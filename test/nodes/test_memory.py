@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-HEAVY = {"gtsam", "jinja2", "matplotlib", "mcap", "rich", "rosbags", "scipy"}
+HEAVY = {"gtsam", "jinja2", "matplotlib", "mcap", "numba", "rich", "rosbags", "scipy"}
 
 
 @pytest.mark.parametrize(

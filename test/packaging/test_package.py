@@ -14,7 +14,7 @@ from msss_graphslam import __version__
 ROOT = Path(__file__).parents[2]
 SOURCES = sorted((ROOT / "msss_graphslam").rglob("*.py"))
 PYPI_NAMES = {"serial": "pyserial", "yaml": "pyyaml"}
-CORE_MAY_USE = {"gtsam", "msss_graphslam", "numpy", "scipy"}
+CORE_MAY_USE = {"gtsam", "msss_graphslam", "numba", "numpy", "scipy"}
 """Beside the parts of the standard library that compute, and touch nothing outside."""
 CORE_MAY_USE |= {
     "array",
