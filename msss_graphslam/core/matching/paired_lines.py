@@ -58,9 +58,9 @@ class PairedLines:
         # A back end matches nothing until the end.
         from msss_graphslam.core.matching.paired_points import paired_points
 
-        self._way, self._pose = way, pose
+        self._way, self._frame = way, way.frame(pose)
         rows, self._chosen, self._on = paired_points(
-            way.points, way.lines, pose, gate, way.backwards
+            way.points, way.lines, *self._frame, gate, way.backwards
         )
         self.rows, self._inverse_deviations = rows[:4], rows[4]
         self.scale = _robust_size(np.abs(rows[3]))
@@ -83,7 +83,7 @@ class PairedLines:
     def matched(self, prior: Array) -> MatchedPairs:
         """Return the pairs with what the covariance asks of them; ``prior`` as there."""
         points, lines, chosen, on = self._way.points, self._way.lines, self._chosen, self._on
-        turn, shift = self._way.frame(self._pose)
+        turn, shift = self._frame
         across, turned = lines.across[on], turn * points.places[chosen]
         own = np.conj(turn * points.normals[chosen])
         moved, lever = (-turn * own, -turned - shift) if self._way.backwards else (own, turned)

@@ -9,7 +9,7 @@ import numpy as np
 from msss_graphslam.core.compiled import compiled
 from msss_graphslam.core.matching.line_features import FlatPoints, Lines
 from msss_graphslam.core.matching.nearest_points import nearest
-from msss_graphslam.core.matching.paired_lines import SAME_SIDE, Pose
+from msss_graphslam.core.matching.paired_lines import SAME_SIDE
 from msss_graphslam.core.matching.plane_vectors import Numbers
 from msss_graphslam.core.types import Array
 
@@ -18,19 +18,16 @@ __all__ = ["paired_points"]
 
 @compiled
 def paired_points(
-    points: FlatPoints, lines: Lines, pose: Pose, gate: float, backwards: bool
+    points: FlatPoints, lines: Lines, turn: complex, shift: complex, gate: float, backwards: bool
 ) -> tuple[Array, Numbers, Numbers]:
     """Pair points with the lines of the points nearest to them, nearer than ``gate`` [m].
 
-    Forwards the points are the current scan's, backwards the reference scan's, whose points are
-    seen from the current one; ``pose`` displaces the current scan. Of k pairs, in the order of the
-    points: (5, k) of the derivatives of the normalised residuals by the displacement, of these
-    themselves and of what normalises them; then the numbers of points and of lines.
+    ``turn`` and ``shift`` take the points into the lines' frame. Forwards they are the sought
+    displacement; ``backwards``, where the points are the reference scan's, they undo it. Of k
+    pairs, in the order of the points: (5, k) of the derivatives of the normalised residuals by the
+    displacement, of these themselves and of what normalises them; then the numbers of points and
+    of lines.
     """
-    turn, shift = complex(math.cos(pose[2]), math.sin(pose[2])), complex(pose[0], pose[1])
-    if backwards:
-        turn = turn.conjugate()
-        shift *= -turn
     rows = np.empty((5, len(points.places)))
     chosen, on = np.empty(len(points.places), np.int64), np.empty(len(points.places), np.int64)
     count = 0
