@@ -129,6 +129,19 @@ class Reading:
     saturated: bool = False
     empty: bool = False
 
+    def having(self, chosen: NDArray[np.bool_]) -> "Reading":
+        """Return the reading with chosen ones (k,) of its echoes."""
+        return Reading(
+            self.stamp_ns,
+            self.bearing,
+            self.ranges[chosen],
+            self.variances[chosen],
+            self.levels[chosen],
+            self.maximum_range,
+            self.saturated,
+            self.empty,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Scan:

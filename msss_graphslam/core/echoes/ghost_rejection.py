@@ -10,7 +10,6 @@ that it belongs to: a chain of echoes over neighbouring beams.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +45,7 @@ def reject_ghosts(
     kept[there] = _stays(surfaces[there], beams, deficits[there], fewest, config.ghost_contrast)
     whole = np.asarray(kept.all(axis=1)).tolist()
     return [
-        reading if is_whole else _select(reading, mask[: reading.ranges.size])
+        reading if is_whole else reading.having(mask[: reading.ranges.size])
         for reading, mask, is_whole in zip(readings, kept, whole, strict=True)
     ]
 
@@ -75,12 +74,3 @@ def _strongest_at_range(echoes: TurnEchoes, window: float) -> Array:
     windows = np.column_stack([begin, end]).ravel()  # every second one lies between two windows
     strongest[order] = np.maximum.reduceat(np.append(levels, -np.inf), windows)[::2]
     return strongest.reshape(echoes.ranges.shape)
-
-
-def _select(reading: Reading, mask: NDArray[np.bool_]) -> Reading:
-    return replace(
-        reading,
-        ranges=reading.ranges[mask],
-        variances=reading.variances[mask],
-        levels=reading.levels[mask],
-    )

@@ -42,10 +42,12 @@ class TurnEchoes:
     @staticmethod
     def of(readings: Sequence[Reading]) -> "TurnEchoes":
         """Return the echoes of readings, of which at least one has some."""
+        sizes = np.array([reading.ranges.size for reading in readings])
+        there = np.arange(sizes.max()) < sizes[:, None]
         return TurnEchoes(
-            ranges=_table([reading.ranges for reading in readings]),
-            levels=_table([reading.levels for reading in readings]),
-            spreads=np.sqrt(_table([reading.variances for reading in readings])),
+            ranges=_table(there, [reading.ranges for reading in readings]),
+            levels=_table(there, [reading.levels for reading in readings]),
+            spreads=np.sqrt(_table(there, [reading.variances for reading in readings])),
             bearings=np.array([reading.bearing for reading in readings]),
         )
 
@@ -99,15 +101,20 @@ def _alike(echoes: TurnEchoes, apart: int, turned: Array, config: Segmentation) 
 
     ``turned`` (n,) or (1,) [rad] is by how much the head has turned between them; NaN is too far.
     """
-    steepest = turned[:, None, None] * np.tan(config.steepest_incidence)
-    reach = np.maximum(*_pairs(echoes.ranges, apart)) * steepest
-    reach += 2.0 * np.hypot(*_pairs(echoes.spreads, apart))
-    away = np.abs(np.subtract(*_pairs(echoes.ranges, apart))) / reach
-    unlike = np.abs(np.subtract(*_pairs(echoes.levels, apart))) / config.level_step
+    there = np.isfinite(echoes.ranges)
+    beams, count = there.shape
+    beam, own, other = np.nonzero(there[:, :, None] & np.roll(there, -apart, axis=0)[:, None, :])
+    first, second = beam * count + own, (beam + apart) % beams * count + other
+    one, two = (echoes.ranges.ravel()[ends] for ends in (first, second))
+    steepest = np.broadcast_to(turned, beams)[beam] * np.tan(config.steepest_incidence)
+    spreads = echoes.spreads.ravel()
+    reach = np.maximum(one, two) * steepest + 2.0 * np.hypot(spreads[first], spreads[second])
+    away = np.abs(one - two) / reach
+    levels = echoes.levels.ravel()
+    unlike = np.abs(levels[first] - levels[second]) / config.level_step
     linked = (away <= 1.0) & (unlike <= 1.0)
-    beam, own, other = np.nonzero(_mutually_nearest(np.where(linked, away + unlike, np.inf)))
-    beams, count = echoes.ranges.shape
-    return np.stack([beam * count + own, (beam + apart) % beams * count + other])
+    ends, distances = np.stack([first[linked], second[linked]]), (away + unlike)[linked]
+    return ends[:, _mutually_nearest(ends, distances, there.size)]
 
 
 def _turned(bearings: Array, step: int) -> Array:
@@ -128,22 +135,18 @@ def _connected(size: int, first: Indices, second: Indices) -> Indices:
         roots = lower
 
 
-def _pairs(values: Array, step: int) -> tuple[Array, Array]:
-    """Return the echoes (n, k, 1) of every beam and those (n, 1, k) of the beam ``step`` on."""
-    return values[:, :, None], np.roll(values, -step, axis=0)[:, None, :]
+def _mutually_nearest(ends: Indices, distances: Array, size: int) -> NDArray[np.bool_]:
+    """Return which links (2, m) between ``size`` echoes are the shortest of both their ends."""
+    are_nearest = np.ones(len(distances), dtype=bool)
+    for end in ends:
+        shortest = np.full(size, np.inf)
+        np.minimum.at(shortest, end, distances)
+        are_nearest &= distances == shortest[end]
+    return are_nearest
 
 
-def _mutually_nearest(distances: Array) -> NDArray[np.bool_]:
-    """Return which pairs (n, k, k) are each other's nearest, at a finite distance."""
-    nearest = np.isfinite(distances)
-    nearest &= distances == distances.min(axis=2, keepdims=True)
-    nearest &= distances == distances.min(axis=1, keepdims=True)
-    return nearest
-
-
-def _table(rows: Sequence[Array]) -> Array:
-    """Return the rows as one (n, k) array, filled up with NaN."""
-    sizes = np.array([row.size for row in rows])
-    table = np.full((len(rows), sizes.max()), np.nan)
-    table[np.arange(sizes.max()) < sizes[:, None]] = np.concatenate(rows)
+def _table(there: NDArray[np.bool_], rows: Sequence[Array]) -> Array:
+    """Return the rows as one (n, k) array where they are ``there``, filled up with NaN."""
+    table = np.full(there.shape, np.nan)
+    table[there] = np.concatenate(rows)
     return table
