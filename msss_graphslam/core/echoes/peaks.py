@@ -35,8 +35,8 @@ def prominent_peaks(values: Array, prominence: float) -> Indices:
     stands_out = heights - np.maximum(valleys[:-1], valleys[1:]) >= prominence
     tops, lows = heights.tolist(), valleys.tolist()
     for peak in np.flatnonzero(~stands_out).tolist():
-        before = _falls(tops[peak::-1], lows[peak::-1], prominence)
-        stands_out[peak] = before and _falls(tops[peak:], lows[peak + 1 :], prominence)
+        before = _falls(tops, lows, peak, -1, prominence)
+        stands_out[peak] = before and _falls(tops, lows, peak, 1, prominence)
     return np.asarray(peaks[stands_out])
 
 
@@ -64,17 +64,19 @@ def _maxima(values: Array) -> Indices:
     return np.asarray((changes[tops] + 1 + changes[tops + 1]) >> 1)
 
 
-def _falls(heights: Sequence[float], valleys: Sequence[float], prominence: float) -> bool:
-    """Whether a valley on the way from the first of the peaks to a higher one is deep enough.
+def _falls(
+    heights: Sequence[float], valleys: Sequence[float], peak: int, step: int, prominence: float
+) -> bool:
+    """Whether a valley on the way from a peak to a higher one is deep enough.
 
-    ``valleys`` lie behind each of the peaks.
+    ``valleys`` (k + 1,) lie before each peak (k,) and behind the last; ``step`` is 1 or -1.
     """
-    top = heights[0]
-    for height, valley in zip(heights, valleys, strict=True):
-        if height > top:
-            return False
-        if top - valley >= prominence:
+    top, behind = heights[peak], (step + 1) // 2
+    while heights[peak] <= top:
+        # The ends are 0, and no peak is lower than its prominence: no way leads beyond them.
+        if top - valleys[peak + behind] >= prominence:
             return True
+        peak += step
     return False
 
 
