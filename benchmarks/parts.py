@@ -113,7 +113,7 @@ PARTS = (
     Part(
         "surface chains",
         "a surface may be one beam wide",
-        values=(("segmentation.surface_beams", 1),),
+        replacements=((f"{_CORE}.echoes.ghost_rejection.beams_by_chance", neutral.no_chance),),
         changes_scans=True,
     ),
     Part(

@@ -139,14 +139,6 @@ class Segmentation:
         minimum=3.0,
         maximum=80.0,
     )
-    surface_beams: int = parameter(
-        3,
-        "beams that see a surface, at least; a beam is wider than a step, so even a pole is in"
-        " several, a speck in the water in one or two; more where so many echoes are heard that"
-        " chance makes chains of them",
-        minimum=1,
-        maximum=20,
-    )
     ghost_window: float = parameter(
         0.5,
         "ranges this near count as the same range; covers the motion within a turn",

@@ -38,7 +38,7 @@ def reject_ghosts(
         return list(readings)
     echoes = TurnEchoes.of(readings)
     surfaces = surfaces_of(echoes, config)
-    fewest = max(config.surface_beams, beams_by_chance(echoes, surfaces, config, beam_width))
+    fewest = beams_by_chance(echoes, surfaces, config, beam_width)
     deficits = _strongest_at_range(echoes, config.ghost_window) - echoes.levels
     beams, _ = there = np.nonzero(surfaces >= 0)
     kept = np.ones(surfaces.shape, dtype=bool)
