@@ -32,7 +32,6 @@ class Lines(NamedTuple):
     across: Vectors
     supported: Array
     variances: Array
-    slips: Array
 
 
 class FlatPoints(NamedTuple):
@@ -46,7 +45,6 @@ class FlatPoints(NamedTuple):
     normals: Vectors
     mean: Array
     deviator: Vectors
-    slips: Array
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,6 @@ class LineFeatures:
             across=np.where(self.flat, np.conj(normals), 0.0)[order],
             supported=2.0 * self.reach[order],
             variances=self.variances[order],
-            slips=self.slips[order],
         )
 
     @cached_property
@@ -94,7 +91,6 @@ class LineFeatures:
             normals=vectors(self.normals[self.flat]),
             mean=0.5 * (xx + yy),
             deviator=0.5 * (xx - yy) + 1j * covariances[:, 0, 1],
-            slips=self.slips[self.flat],
         )
 
 
@@ -126,7 +122,7 @@ def line_features(
         variances=np.maximum(measured, thickness**2),
         reach=reach,
         flat=(thickness < FLATNESS * length) & _supported(spacing, reach),
-        slips=np.zeros((len(points), 2, 3)) if slips is None else slips,
+        slips=np.broadcast_to(0.0, (len(points), 2, 3)) if slips is None else slips,
         order=order,
     )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from msss_graphslam.core.matching.line_features import FlatPoints, LineFeatures, Lines
 from msss_graphslam.core.matching.match_covariance import LEAST_SCALE, MatchedPairs
-from msss_graphslam.core.matching.plane_vectors import along
+from msss_graphslam.core.matching.plane_vectors import Numbers, along
 from msss_graphslam.core.types import Array
 
 __all__ = ["CAUCHY", "SAME_SIDE", "PairedLines", "Pose", "Way"]
@@ -34,10 +34,16 @@ class Way:
         self.points: FlatPoints = points.as_points
         self.lines: Lines = lines.as_lines
         self.backwards = backwards
+        self._from, self._onto = points, lines
 
     def paired(self, pose: Pose, gate: float) -> "PairedLines":
         """Pair the points with the lines at a displacement, at most ``gate`` [m] apart."""
         return PairedLines(self, pose, gate)
+
+    def slips(self, chosen: Numbers, on: Numbers) -> tuple[Array, Array]:
+        """Return those (k, 2, 3) of points and of lines, both by their numbers (k,)."""
+        of_points = self._from.slips[np.flatnonzero(self._from.flat)[chosen]]
+        return of_points, self._onto.slips[self._onto.order[on]]
 
     def frame(self, pose: Pose) -> tuple[complex, complex]:
         """Return the turn and the shift that take points into the lines' frame."""
@@ -88,12 +94,8 @@ class PairedLines:
         own = np.conj(turn * points.normals[chosen])
         moved, lever = (-turn * own, -turned - shift) if self._way.backwards else (own, turned)
         twin = np.array([moved.real, -moved.imag, -(own * lever).imag])
-        slips = np.hstack(
-            [
-                along(turn * across, points.slips[chosen]),
-                -along(across, lines.slips[on]),
-            ]
-        )
+        of_points, of_lines = self._way.slips(chosen, on)
+        slips = np.hstack([along(turn * across, of_points), -along(across, of_lines)])
         inverse = self._inverse_deviations
         return MatchedPairs(
             jacobian=self.rows[:3].T,

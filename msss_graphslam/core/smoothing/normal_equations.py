@@ -21,7 +21,8 @@ class NormalEquations:
 
     def __init__(self, count: int) -> None:
         self._count = count
-        self._whole: Any = None
+        # Of all poses but the first: leaving it out later would take as much memory again.
+        self._free: Any = None
         self.gradient = np.zeros(3 * count)
         self._factors: Any = None
 
@@ -35,11 +36,13 @@ class NormalEquations:
 
         width = 3 * nodes.shape[1]
         places = (3 * nodes[:, :, None] + np.arange(3)).astype(np.int32).reshape(-1, width)
-        indices = np.repeat(places, width, axis=1).ravel(), np.tile(places, width).ravel()
-        size = 3 * self._count
-        added = csc_matrix((information.ravel(), indices), shape=(size, size))
-        self._whole = added if self._whole is None else self._whole + added
         np.add.at(self.gradient, places, gradient)
+        rows, columns = np.repeat(places, width, axis=1).ravel(), np.tile(places, width).ravel()
+        free = np.minimum(rows, columns) >= 3
+        entries = information.ravel()[free], (rows[free] - 3, columns[free] - 3)
+        size = 3 * (self._count - 1)
+        added = csc_matrix(entries, shape=(size, size))
+        self._free = added if self._free is None else self._free + added
         self._factors = None
 
     def solution(self) -> Array:
@@ -62,7 +65,7 @@ class NormalEquations:
         """Return the covariances (count, 3, 3) of the poses, the first one's being zero."""
         self._factors = None  # They take memory, and are no help here.
         result = np.zeros((self._count, 3, 3))
-        result[1:] = pose_covariances(self._whole[3:, 3:])
+        result[1:] = pose_covariances(self._free)
         return result
 
     def covariance_of_last(self, count: int) -> Array:
@@ -80,7 +83,7 @@ class NormalEquations:
 
             # Symmetric and positive definite: the diagonal is as good a pivot as any.
             self._factors = splu(
-                self._whole[3:, 3:],
+                self._free,
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=0.0,
                 options={"SymmetricMode": True},
