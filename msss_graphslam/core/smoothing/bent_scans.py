@@ -15,7 +15,7 @@ from msss_graphslam.core.types import Array, Scan
 
 __all__ = ["BentScans", "applied", "change_of"]
 
-KEPT = 1024
+KEPT = 768
 """Bent scans at hand; others are bent again when they are needed: bounds the memory."""
 
 
