@@ -23,7 +23,7 @@ from msss_graphslam.core.types import Estimate, Trajectory
 
 __all__ = ["Trial", "estimate_of", "results"]
 
-_Front = tuple[Changes, Alteration, bool]
+_Front = tuple[Changes, str, Alteration, bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +102,5 @@ def _front(trial: Trial) -> _Front:
 
     Estimators that go beyond the paper ask for more than scans: for parts of them.
     """
-    part = _part(trial)
-    values = trial.values + (part.values if part.changes_scans else ())
-    return values, trial.alteration, ESTIMATORS[trial.estimator].goes_beyond
+    without = trial.without if _part(trial).changes_scans else ""
+    return trial.values, without, trial.alteration, ESTIMATORS[trial.estimator].goes_beyond
