@@ -10,13 +10,11 @@ from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.groups import Micron
 from msss_graphslam.errors import UserError
 from msss_graphslam.messages.refusal import in_one_word
-from msss_graphslam.messages.topics import SONAR_PING
 from msss_graphslam.micron.settings import HeadSettings
 from msss_graphslam.nodes.driving.connected import ConnectedHead
 from msss_graphslam.nodes.driving.pings import Pings
 from msss_graphslam.nodes.driving.recorded import RecordedHead
 from msss_graphslam.nodes.driving.source import ByteSource
-from msss_graphslam.nodes.replay.links import listeners
 from msss_graphslam.ros.diagnostics import Finding, Level
 from msss_graphslam.ros.node import SlamNode, leave, run
 
@@ -45,7 +43,6 @@ class MicronDriverNode(SlamNode):
         self.diagnostics.values["source"] = lambda: self._micron.source
         self.diagnostics.values["beams"] = lambda: self._pings.count
         self.diagnostics.values["beams_per_s"] = lambda: self._pings.rate
-        self.diagnostics.values[listeners(SONAR_PING.name)] = lambda: self._pings.listeners
         self.diagnostics.values["stamp_jitter_ms"] = lambda: self._pings.jitter_ms
         self.diagnostics.checks += [lambda: self._source.finding(), self._misfit]
         self.every(_LOOK_EVERY, self._look)

@@ -7,7 +7,6 @@ import numpy as np
 from msss_graphslam.core.compounding import carried_over
 from msss_graphslam.core.types import Array, Odometry
 from msss_graphslam.messages import encoding, frames, topics
-from msss_graphslam.nodes.replay.links import listeners
 from msss_graphslam.ros.messages import make
 from msss_graphslam.ros.moulds import Mould
 from msss_graphslam.ros.node import SlamNode
@@ -29,10 +28,8 @@ class PoseOutput:
         self._base = node.frame(frames.BASE_LINK)
         self._odometry = node.offer(topics.ODOM)
         self._pose = node.offer(topics.POSE)
-        node.diagnostics.values |= {
-            listeners(topics.ODOM.name): lambda: self._odometry.subscribers,
-            listeners(topics.POSE.name): lambda: self._pose.subscribers,
-        }
+        self._odometry.show_listeners()
+        self._pose.show_listeners()
         nowhere, unknown = np.zeros(6), np.zeros((6, 6))
         standing = Odometry(0, nowhere, unknown, nowhere, unknown)
         self._odometry_mould = Mould(

@@ -13,7 +13,12 @@ from msss_graphslam.ros.diagnostics import Diagnostics
 from msss_graphslam.ros.messages import available, message_class
 from msss_graphslam.ros.qos import name_of, profile_of
 
-__all__ = ["Output"]
+__all__ = ["Output", "listeners"]
+
+
+def listeners(topic: str) -> str:
+    """Return the diagnostics' row that says how many listeners a publisher knows."""
+    return f"listeners/{topic}"
 
 
 class Output:
@@ -55,6 +60,10 @@ class Output:
     def subscribers(self) -> int:
         """How many subscriptions are matched."""
         return int(self._publisher.get_subscription_count()) if self.available else 0
+
+    def show_listeners(self) -> None:
+        """Say in the diagnostics how many listen."""
+        self._diagnostics.values[listeners(self.topic.name)] = lambda: self.subscribers
 
     def publish(self, message: Any, *numbers: ArrayLike) -> bool:
         """Publish the message (or its bytes) if all the numbers are finite; else count it."""

@@ -11,10 +11,10 @@ from sample_bags import START_NS
 
 from msss_graphslam.messages import topics
 from msss_graphslam.nodes.replay.lead import header_stamp_ns
-from msss_graphslam.nodes.replay.links import listeners
 from msss_graphslam.recordings.reader import open_recording
 from msss_graphslam.ros.diagnostics import TOPIC
 from msss_graphslam.ros.messages import make, message_class
+from msss_graphslam.ros.outputs import listeners
 from msss_graphslam.ros.qos import STREAM, profile_of
 
 SENSORS = (topics.GROUND_TRUTH, topics.DVL, topics.PRESSURE, topics.IMU, topics.SONAR_PING)
@@ -50,12 +50,13 @@ class Listener(TestNode):
 
         self.node.create_service(TRIGGER, service, serve)
 
-    def tell_listeners(self, topic: topics.Topic, count: int) -> None:
-        """Say in the diagnostics whom the publisher of dead reckoning's reaches."""
+    def tells(self, topic: topics.Topic, count: int) -> bool:
+        """Say in the diagnostics how many listeners dead reckoning's publisher knows."""
         row = make("diagnostic_msgs/msg/KeyValue", key=listeners(topic.name), value=str(count))
         name = self.node.get_fully_qualified_name()
         status = make("diagnostic_msgs/msg/DiagnosticStatus", name=name, values=[row])
         self._diagnostics.publish(make("diagnostic_msgs/msg/DiagnosticArray", status=[status]))
+        return True
 
     def _listen(self, topic: topics.Topic, name: str) -> None:
         kind = message_class(topic.type_name)

@@ -74,10 +74,10 @@ def test_nothing_is_sent_before_the_poses_that_come_of_it_are_heard(
         with TestNode(at, "back_end") as late:
             kind = message_class(topics.POSE.type_name)
             late.node.create_subscription(kind, "pose", lambda _: None, STREAM)
-            listener.tell_listeners(topics.POSE, 0)
+            listener.tells(topics.POSE, 0)
             process.wait_for_output(r"(?s)(waiting for back_end \(pose\).*){2}")
             assert listener.count == 0
-            listener.tell_listeners(topics.POSE, 1)
+            listener.tells(topics.POSE, 1)
             assert process.wait() == 0
             wait_until(lambda: listener.count == 250, "all messages")
 

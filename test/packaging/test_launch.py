@@ -15,6 +15,7 @@ from sample_bags import START_NS, beam_message, write_bag
 from msss_graphslam.config.configuration import Configuration
 from msss_graphslam.config.files import read_parameters
 from msss_graphslam.core.recipes import ESTIMATORS
+from msss_graphslam.nodes.names import AWAITED
 from msss_graphslam.recordings.mounting import Mounting
 
 ROOT = Path(__file__).parents[2]
@@ -141,7 +142,7 @@ def test_a_replay_runs_on_its_own_clock_and_ends_everything() -> None:
         "rate": 20.0,
         "start_offset": 0.0,
         "loop": True,
-        "wait_for": ["dead_reckoning", "scan_generation", "back_end"],
+        "wait_for": list(AWAITED),
     }
     assert isinstance(replay.parameters["rate"], float)
     assert [node.executable for node in launched.nodes if node.ends_all] == ["bag_replay"]

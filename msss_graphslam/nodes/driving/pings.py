@@ -27,6 +27,7 @@ class Pings:
         self.count = 0
         self.frame_id = ""
         self._output = node.offer(topics.SONAR_PING)
+        self._output.show_listeners()
         self._lock = threading.Lock()
         self._since = monotonic()
         self._arrivals: deque[float] = deque()
@@ -40,11 +41,6 @@ class Pings:
             self._arrivals.append(monotonic())
             self._stamps.append(beam.stamp_ns)
             self._forget()
-
-    @property
-    def listeners(self) -> int:
-        """How many subscriptions get each beam."""
-        return self._output.subscribers
 
     @property
     def silence(self) -> float:

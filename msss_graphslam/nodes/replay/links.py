@@ -12,8 +12,9 @@ from msss_graphslam.messages import topics
 from msss_graphslam.nodes.names import DRIVER
 from msss_graphslam.ros.diagnostics import TOPIC
 from msss_graphslam.ros.messages import message_class
+from msss_graphslam.ros.outputs import listeners
 
-__all__ = ["MADE_BY", "Links", "listeners"]
+__all__ = ["MADE_BY", "Links"]
 
 MADE_BY = {
     topics.SONAR_PING.name: DRIVER,
@@ -25,19 +26,14 @@ MADE_BY = {
 _DEPTH = 100
 
 
-def listeners(topic: str) -> str:
-    """Return the publisher's row that says how many listeners it knows."""
-    return f"listeners/{topic}"
-
-
 class Links:
     """The graph shows who subscribes; only the publisher knows whom it reaches already."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._namespace = node.get_namespace()
-        self._counts: dict[str, int] = {}
-        self._reached: set[bytes] = set()
+        self._counts = dict.fromkeys(MADE_BY, 0)
+        self._reached: dict[str, set[bytes]] = {topic: set() for topic in MADE_BY}
         kind = message_class("diagnostic_msgs/msg/DiagnosticArray")
         node.create_subscription(kind, TOPIC, self._hear, _DEPTH)
 
@@ -45,11 +41,12 @@ class Links:
         """Whether the node of that name, in the own namespace, gets the topic from now on."""
         full_name = self._node.resolve_topic_name(topic)
         endpoints = self._node.get_subscriptions_info_by_topic(full_name)
-        if self._counts.get(topic, 0) >= len(endpoints):
-            self._reached |= {_identifier(endpoint) for endpoint in endpoints}
+        reached = self._reached[topic]
+        if self._counts[topic] >= len(endpoints):
+            reached |= {_identifier(endpoint) for endpoint in endpoints}
         return any(
             (endpoint.node_name, endpoint.node_namespace) == (name, self._namespace)
-            and _identifier(endpoint) in self._reached
+            and _identifier(endpoint) in reached
             for endpoint in endpoints
         )
 
@@ -59,7 +56,13 @@ class Links:
             for topic, source in MADE_BY.items():
                 if status.name == f"{self._namespace.rstrip('/')}/{source}":
                     with suppress(ValueError):
-                        self._counts[topic] = int(rows.get(listeners(topic), "0"))
+                        self._note(topic, int(rows.get(listeners(topic), "0")))
+
+    def _note(self, topic: str, count: int) -> None:
+        if count < self._counts[topic]:
+            # A publisher that was started again: it has to find them anew.
+            self._reached[topic].clear()
+        self._counts[topic] = count
 
 
 def _identifier(endpoint: TopicEndpointInfo) -> bytes:
