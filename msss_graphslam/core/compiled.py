@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Loops over plain numbers, compiled at their first call and kept for the next process.
 
-Modules of such loops are imported where they are called: the compiler takes a node 0.2 s and some
-60 MiB, and not every node has something to match. Within them no array is an operand, only its
-elements are: NumPy's functions take seconds to compile.
+Modules of such loops are imported where they are called: the compiler takes a node half a second
+and 100 MiB, and not every node has something to match. Within them no array is an operand, only
+its elements are: NumPy's functions take seconds to compile. Loops that call each other stand in
+one file, and take what others define as arguments: what was kept counts as outdated when its own
+file has changed, and then only.
 """
 
 from collections.abc import Callable

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from msss_graphslam.core.matching.nearest_points import nearest, nearest_of_each, neighbours
+from msss_graphslam.core.matching.loops import nearest, nearest_of_each, neighbours
 from msss_graphslam.core.matching.plane_vectors import Vectors
 
 

@@ -106,7 +106,7 @@ def line_features(
     if len(points) < NEIGHBOURS:
         return None
     # A back end matches nothing until the end.
-    from msss_graphslam.core.matching.local_lines import local_lines
+    from msss_graphslam.core.matching.loops import local_lines
 
     order = np.argsort(points[:, 0], kind="stable")
     table = np.empty((8, len(points)))

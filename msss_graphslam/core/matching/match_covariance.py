@@ -15,15 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from msss_graphslam.core.matching.line_features import NEIGHBOURS
+from msss_graphslam.core.matching.robust_weights import LEAST_SCALE, robust_size
 from msss_graphslam.core.types import Array
 
 __all__ = ["WIDEST", "MatchedPairs", "match_covariance", "match_information"]
 
 WIDEST = 1e4
 """Variance [m^2, rad^2] that stands for a direction of which the scans say nothing."""
-
-LEAST_SCALE = 0.1
-"""Residuals smaller than this share of their stated deviations are luck."""
 
 SURE = 3.0
 """Structure counts where it exceeds that of bare walls by so many standard deviations of it."""
@@ -136,14 +134,13 @@ def _summed(pairs: MatchedPairs) -> _Sums:
     rows = np.hstack([pairs.jacobian, pairs.twin, pairs.slips])
     products = (rows[:, :6].T * pairs.weights) @ rows
     hessian, twin, mixed = products[:3, :3], products[3:, 3:6], products[:3, 3:6]
-    size = np.abs(pairs.residuals)
-    scale = 1.4826 * float(np.partition(size, len(size) // 2)[len(size) // 2])
+    scale = max(robust_size(pairs.residuals), LEAST_SCALE)
     return _Sums(
         hessian=hessian,
         found=0.5 * (hessian + twin),
         pretended=0.5 * (hessian + twin - mixed - mixed.T),
         pull=products[:3, 6:],
-        variance=max(scale, LEAST_SCALE) ** 2 * _repetition(pairs, hessian + pairs.prior),
+        variance=scale**2 * _repetition(pairs, hessian + pairs.prior),
     )
 
 

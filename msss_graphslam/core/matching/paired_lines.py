@@ -7,14 +7,12 @@ import cmath
 import numpy as np
 
 from msss_graphslam.core.matching.line_features import FlatPoints, LineFeatures, Lines
-from msss_graphslam.core.matching.match_covariance import LEAST_SCALE, MatchedPairs
+from msss_graphslam.core.matching.match_covariance import MatchedPairs
 from msss_graphslam.core.matching.plane_vectors import Numbers, along
+from msss_graphslam.core.matching.robust_weights import cauchy_weights, robust_size
 from msss_graphslam.core.types import Array
 
-__all__ = ["CAUCHY", "SAME_SIDE", "PairedLines", "Pose", "Way"]
-
-CAUCHY = 2.0
-"""Residual, in robust standard deviations, at which a pair's weight is halved."""
+__all__ = ["SAME_SIDE", "PairedLines", "Pose", "Way"]
 
 SAME_SIDE = 0.7
 """Smallest cosine between the normals of a pair: a wall has two sides and a corner two walls."""
@@ -62,16 +60,15 @@ class PairedLines:
 
     def __init__(self, way: Way, pose: Pose, gate: float) -> None:
         # A back end matches nothing until the end.
-        from msss_graphslam.core.matching.paired_points import paired_points
+        from msss_graphslam.core.matching.loops import paired_points
 
         self._way, self._frame = way, way.frame(pose)
         rows, self._chosen, self._on = paired_points(
-            way.points, way.lines, *self._frame, gate, way.backwards
+            way.points, way.lines, *self._frame, gate, SAME_SIDE, way.backwards
         )
         self.rows, self._inverse_deviations = rows[:4], rows[4]
-        self.scale = _robust_size(np.abs(rows[3]))
-        width = CAUCHY * max(self.scale, LEAST_SCALE)
-        self.weights = 1.0 / (1.0 + (rows[3] / width) ** 2)
+        self.scale = robust_size(rows[3])
+        self.weights = cauchy_weights(rows[3], self.scale)
 
     def __len__(self) -> int:
         return len(self._chosen)
@@ -105,9 +102,3 @@ class PairedLines:
             slips=slips * inverse[:, None],
             prior=prior,
         )
-
-
-def _robust_size(sizes: Array) -> float:
-    """Return the standard deviation that sizes of residuals speak of, 1 without any."""
-    middle = len(sizes) // 2
-    return 1.4826 * float(np.partition(sizes, middle)[middle]) if len(sizes) else 1.0

@@ -9,8 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from msss_graphslam.core.matching.line_features import LineFeatures
-from msss_graphslam.core.matching.paired_lines import CAUCHY, SAME_SIDE
+from msss_graphslam.core.matching.paired_lines import SAME_SIDE
 from msss_graphslam.core.matching.plane_vectors import Numbers, Vectors, vectors
+from msss_graphslam.core.matching.robust_weights import cauchy_weights, robust_size
 from msss_graphslam.core.smoothing.bent_scan import BentScan, Hanging
 from msss_graphslam.core.types import Array
 
@@ -91,7 +92,7 @@ def _points(scans: Sequence[BentScan], displacements: Array) -> _Points:
 def _paired(points: _Points, lines: LineFeatures, reach: float) -> tuple[Numbers, Numbers]:
     """Return which points lie on which lines."""
     # A back end pairs nothing until the end.
-    from msss_graphslam.core.matching.nearest_points import nearest_of_each
+    from msss_graphslam.core.matching.loops import nearest_of_each
 
     seen, there = points.turns * points.places + points.shifts, lines.as_lines
     found = nearest_of_each(there.places, seen, reach)
@@ -135,8 +136,6 @@ def _spread(covariances: Array, normals: Vectors) -> Array:
 
 def _weighed(normalised: Array, jacobian: Array) -> Pairing:
     """Robust weights; residuals larger than their deviations say widen all of them."""
-    middle = len(normalised) // 2
-    scale = 1.4826 * float(np.partition(np.abs(normalised), middle)[middle])
-    weights = 1.0 / (1.0 + (normalised / (CAUCHY * max(scale, 0.1))) ** 2)
-    weighted = jacobian.T * (weights / max(scale, 1.0) ** 2)
+    scale = robust_size(normalised)
+    weighted = jacobian.T * (cauchy_weights(normalised, scale) / max(scale, 1.0) ** 2)
     return Pairing(weighted @ jacobian, weighted @ normalised)
